@@ -1,0 +1,217 @@
+"""Kernels: plain Python functions over flat arrays, which Numba may compile and Python may call.
+
+An algorithm's kernel is a generator that yields ``(event, where)`` before and after each change.
+All its state lives in the arrays it is given, so it can be dropped after any *settled* event and
+started again on the same arrays: it goes on where it stopped. Two drivers run the same generator:
+
+* :func:`watch` iterates it in plain Python, over views that hand out Python numbers;
+* :func:`run` drains it, compiled by Numba where the input is large, in plain Python where it is small.
+
+This is the only file that knows Numba.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import inspect
+import sys
+import threading
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any, TypeVar
+
+import numpy as np
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+SETTLED = 16  # events from here on leave the arrays whole: a driver may stop after one
+EVENTS_A_CALL = 50_000  # compiled work returns to Python this often, for Ctrl-C and progress
+SMALL = 3_000  # below this size a first call runs in plain Python rather than wait for a compiler
+PATIENCE = 2.0  # seconds of compiling before a line says so
+
+_kernels: list[Callable[..., Any]] = []
+_compiled: dict[Callable[..., Any], Any] = {}
+_lock = threading.RLock()
+
+
+def kernel(function: Function) -> Function:
+    """Note ``function`` as a kernel: it stays callable as it is, and compiled code may call it too."""
+    _kernels.append(function)
+    return function
+
+
+def index(i: int) -> int:
+    """Narrow ``i`` to an index. Compiled it is a uint32, which spares every array access a test for < 0."""
+    return i
+
+
+def scratch(n: int) -> list[float]:
+    """Room for ``n`` floats, to be overwritten. Compiled it is an array."""
+    return [0.0] * n
+
+
+def watch(generator: Callable[..., Iterator[tuple[int, int]]], state: Sequence[np.ndarray]) -> Iterator[tuple[int, int]]:
+    """Iterate a generator kernel in plain Python, yielding each event as it happens.
+
+    The kernel gets memoryviews of the same arrays: they hand out Python's own ints and floats, which
+    are faster than NumPy's scalars and neither wrap nor warn.
+    """
+    return generator(*(memoryview(array) for array in state))
+
+
+def run(
+    generator: Callable[..., Iterator[tuple[int, int]]],
+    state: Sequence[np.ndarray],
+    size: int,
+    *,
+    total: int | None = None,
+    done: Callable[[], int] | None = None,
+) -> tuple[int, int]:
+    """Drain a generator kernel: compiled if that is at hand or worth its wait, else in plain Python.
+
+    ``size`` is the size of the input, ``done()`` says how much of ``total`` is done (a progress bar
+    appears after two seconds). Returns the last event, ``(0, 0)`` if there was none.
+    """
+    arguments = (tuple(state), EVENTS_A_CALL)
+    if not worth_compiling(generator, arguments, size):
+        last = (0, 0)
+        for last in watch(generator, state):
+            pass
+        return last
+    drain = compile_driver(generator, state)
+    last = (0, 0)
+    with _progress(total, generator.__name__) as bar:
+        while True:
+            finished, event, where = drain(*arguments)
+            last = (event, where) if event else last
+            if bar is not None and done is not None:
+                bar.update(done() - bar.n)
+            if finished:
+                return last
+
+
+def call(function: Callable[..., Any], *arguments: Any, size: int) -> Any:
+    """Call a kernel that is no generator: compiled if that is at hand or worth its wait."""
+    if not worth_compiling(function, (arguments,), size):
+        return function(*(memoryview(a) if isinstance(a, np.ndarray) else a for a in arguments))
+    return compile_call(function, arguments)(arguments)
+
+
+def worth_compiling(function: Callable[..., Any], arguments: tuple[Any, ...], size: int) -> bool:
+    """Whether to run ``function`` compiled: it already is for such arguments, or the input is large and Numba is there."""
+    if size > SMALL:
+        return _numba() is not None
+    return function in _compiled and _types(arguments) in _compiled[function].overloads
+
+
+def compile_driver(generator: Callable[..., Iterator[tuple[int, int]]], state: Sequence[np.ndarray]) -> Callable[..., Any]:
+    """The compiled driver of a generator kernel, compiled for these arrays if it was not yet."""
+    fingerprint = _fingerprint(generator)
+
+    def drain(arrays: Any, budget: int) -> tuple[bool, int, int]:
+        fingerprint  # noqa: B018  (a closure's cells are part of Numba's cache key)
+        event, where = 0, 0
+        for event, where in generator(*arrays):  # noqa: B007
+            budget -= 1
+            if budget <= 0 and event >= SETTLED:
+                return False, event, where
+        return True, event, where
+
+    return _compile(generator, drain, (tuple(state), EVENTS_A_CALL))
+
+
+def compile_call(function: Callable[..., Any], arguments: tuple[Any, ...]) -> Callable[..., Any]:
+    """A compiled ``call(arguments)`` of a kernel, compiled for these arguments if it was not yet."""
+    fingerprint = _fingerprint(function)
+
+    def call(arguments: Any) -> Any:
+        fingerprint  # noqa: B018
+        return function(*arguments)
+
+    return _compile(function, call, (arguments,))
+
+
+def _compile(function: Callable[..., Any], driver: Callable[..., Any], arguments: tuple[Any, ...]) -> Callable[..., Any]:
+    numba = _numba()
+    with _lock:
+        if function not in _compiled:
+            options = {"error_model": "numpy", "nogil": True}
+            try:
+                _compiled[function] = numba.njit(driver, cache=True, **options)
+            except RuntimeError:  # nowhere to write a cache: graders, hubs
+                _compiled[function] = numba.njit(driver, **options)
+        dispatcher = _compiled[function]
+        types = _types(arguments)
+        if types not in dispatcher.overloads:
+            notice = threading.Timer(PATIENCE, _say_compiling, [function.__name__])
+            notice.daemon = True
+            notice.start()
+            try:
+                dispatcher.compile(types)
+            finally:
+                notice.cancel()
+        return dispatcher
+
+
+def _types(arguments: tuple[Any, ...]) -> tuple[Any, ...]:
+    return tuple(_numba().typeof(argument) for argument in arguments)
+
+
+def _say_compiling(name: str) -> None:
+    print(f"fem_mesh: compiling {name}, once on this machine (some 10 s) ...", file=sys.stderr, flush=True)
+
+
+def _fingerprint(function: Callable[..., Any]) -> str:
+    """A hash of every module that holds kernels: an edited kernel must not meet a cached driver."""
+    digest = hashlib.sha256()
+    modules = {sys.modules[f.__module__] for f in [*_kernels, function] if f.__module__ in sys.modules}
+    for module in sorted(modules, key=lambda module: module.__name__):
+        try:
+            digest.update(inspect.getsource(module).encode())
+        except (OSError, TypeError):  # typed into a notebook: its code must do
+            for f in [*_kernels, function]:
+                if f.__module__ == module.__name__:
+                    digest.update(f.__code__.co_code + repr(f.__code__.co_consts).encode())
+    return digest.hexdigest()
+
+
+_numba_module: Any = False
+
+
+def _numba() -> Any:
+    """Numba with every kernel registered, or None where it cannot be imported."""
+    global _numba_module
+    with _lock:
+        if _numba_module is False:
+            try:
+                import numba
+                from numba.extending import overload
+            except ImportError:
+                _numba_module = None
+                return None
+
+            @overload(index, inline="always")
+            def _index(i):  # type: ignore[no-untyped-def]
+                return lambda i: np.uint32(i)
+
+            @overload(scratch, inline="always")
+            def _scratch(n):  # type: ignore[no-untyped-def]
+                return lambda n: np.empty(n)
+
+            _numba_module = numba
+        if _numba_module is not None:
+            from numba.extending import register_jitable
+
+            for function in _kernels:
+                if not hasattr(function, "__numba_registered__"):
+                    function.__numba_registered__ = register_jitable(error_model="numpy")(function)
+        return _numba_module
+
+
+def _progress(total: int | None, name: str) -> Any:
+    from contextlib import nullcontext
+
+    if total is None:
+        return nullcontext()
+    from tqdm import tqdm
+
+    return tqdm(total=total, desc=name, delay=2, leave=False, unit_scale=True)

@@ -1,0 +1,115 @@
+"""Points as users give them, checked at the door; and a few ways to make some."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from fem_mesh.errors import MeshError
+from fem_mesh.predicates import LARGEST, SMALLEST
+
+LARGEST_INTEGER = 2**53  # integers up to here are doubles
+GRAIN = 2.0**30  # made points are multiples of 2^-30: other machines' sines give the same mesh
+
+
+def as_points(points: Any) -> np.ndarray:
+    """``points`` as a new float64 array (n, 2), without any change of value.
+
+    Takes arrays, lists of pairs, integers. Raises MeshError, naming the row, where the shape is wrong
+    or a coordinate is NaN, infinite, no double, or outside 2^-142 .. 2^201 in magnitude.
+
+    >>> as_points([(0, 0), (1, 0)])
+    array([[0., 0.],
+           [1., 0.]])
+    """
+    if not hasattr(points, "__array__") and not hasattr(points, "__len__"):
+        points = list(points) if hasattr(points, "__iter__") else points
+    try:
+        given = np.asarray(points)
+    except ValueError:
+        given = np.empty(0, object)
+    if given.size == 0 and given.ndim == 1 and not (hasattr(points, "__len__") and len(points)):
+        return np.empty((0, 2))
+    if given.ndim != 2 or given.shape[1] != 2:
+        raise MeshError(_shape_complaint(points, given))
+    if np.iscomplexobj(given) or given.dtype.kind not in "fiubO":
+        raise MeshError(f"points must be real numbers, not {given.dtype}")
+    try:
+        result = np.array(given, dtype=np.float64, order="C")
+    except (TypeError, ValueError, OverflowError):
+        row = next(i for i, pair in enumerate(given) if not _are_numbers(pair))
+        raise MeshError(f"point {row} is {tuple(given[row].tolist())!r}, not a pair of numbers") from None
+    _refuse(~np.isfinite(result), result, "is not finite: drop it, or repair what made it")
+    with np.errstate(over="ignore"):
+        if given.dtype.kind in "iu":
+            too_large = (given > LARGEST_INTEGER) | (given < -LARGEST_INTEGER)
+            _refuse(too_large, given, "has an integer above 2^53, which no double holds: shift or scale the points")
+        elif given.dtype != np.float64:
+            _refuse(given != result, given, "is no pair of doubles: round it yourself, or scale the points")
+    magnitude = np.abs(result)
+    outside = ((magnitude < SMALLEST) & (magnitude > 0)) | (magnitude > LARGEST)
+    _refuse(outside, result, "has a magnitude outside 2^-142 .. 2^201, where signs are not exact: scale the points")
+    result += 0.0  # -0.0 is 0.0
+    return result
+
+
+def _shape_complaint(points: Any, given: np.ndarray) -> str:
+    if given.ndim == 2:
+        return f"points must have the shape (n, 2), not {given.shape}: one row (x, y) a point"
+    for row, point in enumerate(points if hasattr(points, "__iter__") else ()):
+        if not hasattr(point, "__len__") or len(point) != 2:
+            return f"point {row} is {point!r}, not a pair (x, y)"
+    return f"points must have the shape (n, 2), not {given.shape}: one row (x, y) a point"
+
+
+def _are_numbers(pair: Any) -> bool:
+    try:
+        return len([float(value) for value in pair]) == 2
+    except (TypeError, ValueError, OverflowError):
+        return False
+
+
+def _refuse(wrong: np.ndarray, points: np.ndarray, complaint: str) -> None:
+    rows = np.flatnonzero(wrong.any(axis=1))
+    if len(rows):
+        more = f" (and {len(rows) - 1} more points)" if len(rows) > 1 else ""
+        raise MeshError(f"point {rows[0]} = {tuple(points[rows[0]].tolist())} {complaint}{more}")
+
+
+# ---- made points -----------------------------------------------------------------------------------
+
+
+def random_points(n: int, seed: int = 0) -> np.ndarray:
+    """``n`` points, uniform in the unit square, the same for the same ``seed``: float64 (n, 2).
+
+    >>> random_points(2, seed=1).round(3).tolist()
+    [[0.512, 0.95], [0.144, 0.949]]
+    """
+    return _round(np.random.default_rng(seed).random((n, 2)))
+
+
+def ring_points(n: int, radius: float = 1.0, center: tuple[float, float] = (0.0, 0.0)) -> np.ndarray:
+    """``n`` points on a circle, as nearly as doubles allow: float64 (n, 2), counter-clockwise from the right.
+
+    >>> ring_points(4).tolist()
+    [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]]
+    """
+    angle = 2 * np.pi * np.arange(n) / max(n, 1)
+    return _round(np.column_stack([np.cos(angle), np.sin(angle)]) * radius) + np.asarray(center, float)
+
+
+def grid_points(columns: int, rows: int | None = None) -> np.ndarray:
+    """The points with integer coordinates 0 .. columns - 1, 0 .. rows - 1, row by row: float64 (n, 2).
+
+    Every four neighbours lie on a circle: each square may be cut along either diagonal.
+
+    >>> grid_points(2).tolist()
+    [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]]
+    """
+    y, x = np.mgrid[: columns if rows is None else rows, :columns]
+    return np.column_stack([x.ravel(), y.ravel()]).astype(float)
+
+
+def _round(points: np.ndarray) -> np.ndarray:
+    return np.asarray(np.round(points * GRAIN) / GRAIN + 0.0)

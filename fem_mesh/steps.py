@@ -1,0 +1,361 @@
+"""Step and Trace: what an algorithm tells while it works, recorded so that one can go back.
+
+A trace is a table of *lifetimes*: each triangle (and each point) with the step that brought it and the
+step that took it. The mesh after step k is the rows born by then and not yet gone, so any frame is as
+near as any other, and a trace takes the memory of its changes.
+"""
+
+from __future__ import annotations
+
+import heapq
+from array import array
+from collections import Counter
+from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
+from typing import Any
+
+import numpy as np
+
+from fem_mesh.errors import MeshError
+from fem_mesh.mesh.mesh import Mesh
+from fem_mesh.mesh.quality import angles
+
+Triangle = tuple[int, int, int]
+NEVER = np.iinfo(np.int32).max
+
+
+class Step:
+    """One step of an algorithm. Immutable; applying and undoing it cost its own size.
+
+    kind : a short word: "locate", "cavity", "insert", "test", "flip", ...
+    caption : one plain sentence with the numbers that decided it, made when it is read
+    added, removed : the triangles that come and go, triples of point numbers
+    new_points : the points that come, triples (number, x, y)
+    point : what the step is about, a pair (x, y), or None
+    edges : pairs of point numbers to show
+    doomed : triangles about to go
+    visited : triangles looked at on the way
+    circles : triangles whose circumcircles to show
+    facts : the numbers behind the caption, by name
+
+    A lecturer's own generator yields steps with the *full current lists* instead of differences, and
+    may go on changing them: :func:`record` copies them at the yield and works out what changed.
+
+    >>> step = Step("insert", "point 2 joins", points=[(0, 0), (1, 0), (0, 1)], triangles=[(0, 1, 2)])
+    >>> step
+    Step insert: point 2 joins
+    """
+
+    __slots__ = (
+        "_caption", "added", "circles", "doomed", "edges", "facts", "kind",
+        "new_points", "point", "points", "removed", "triangles", "visited",
+    )  # fmt: skip
+
+    kind: str
+    added: tuple[Triangle, ...]
+    removed: tuple[Triangle, ...]
+    new_points: tuple[tuple[int, float, float], ...]
+    point: tuple[float, float] | None
+    edges: tuple[tuple[int, int], ...]
+    doomed: tuple[Triangle, ...]
+    visited: tuple[Triangle, ...]
+    circles: tuple[Triangle, ...]
+    facts: dict[str, Any]
+    points: Any
+    triangles: Any
+
+    def __init__(
+        self,
+        kind: str,
+        caption: str | Callable[[Step], str] = "",
+        *,
+        points: Any = None,
+        triangles: Any = None,
+        added: Iterable[Any] = (),
+        removed: Iterable[Any] = (),
+        new_points: Iterable[Any] = (),
+        point: Any = None,
+        edges: Iterable[Any] = (),
+        doomed: Iterable[Any] = (),
+        visited: Iterable[Any] = (),
+        circles: Iterable[Any] = (),
+        **facts: Any,
+    ) -> None:
+        put = object.__setattr__
+        put(self, "kind", kind)
+        put(self, "_caption", caption)
+        put(self, "added", _tuples(added))
+        put(self, "removed", _tuples(removed))
+        put(self, "new_points", _tuples(new_points))
+        put(self, "point", None if point is None else tuple(point))
+        put(self, "edges", _tuples(edges))
+        put(self, "doomed", _tuples(doomed))
+        put(self, "visited", _tuples(visited))
+        put(self, "circles", _tuples(circles))
+        put(self, "facts", facts)
+        put(self, "points", points)
+        put(self, "triangles", triangles)
+
+    @property
+    def caption(self) -> str:
+        """One plain sentence: what happens, and the numbers that decided it."""
+        return self._caption if isinstance(self._caption, str) else self._caption(self)  # type: ignore[attr-defined, no-any-return]
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        raise AttributeError(f"a Step does not change: {name!r} cannot be set")
+
+    def __repr__(self) -> str:
+        return f"Step {self.kind}: {self.caption}" if self.caption else f"Step {self.kind}"
+
+
+class Trace(Sequence[Step]):
+    """A recorded run: ``len(trace)``, ``trace[k]``, iteration; every frame at once, forward and back.
+
+    mesh : the result the algorithm returned; for a lecturer's own generator the last frame
+    counts : how many steps there are of each kind
+    complete : False if ``record`` stopped at its limit
+
+    >>> import fem_mesh as fm
+    >>> trace = fm.record(fm.bowyer_watson([(0, 0), (1, 0), (0, 1), (1, 1)]))
+    >>> trace
+    Trace: 5 steps (start 1, locate 1, cavity 1, insert 1, done 1), 4 points, 2 triangles
+    >>> trace[3].caption
+    'point 3 is joined to the 3 edges around the cavity: 2 triangles come, 1 goes'
+    """
+
+    def __init__(self) -> None:
+        self._steps: list[Step] = []
+        self._triangles, self._points = _Lifetimes("i", 3), _Lifetimes("d", 2)
+        self.view: tuple[float, float, float, float] | None = None
+        self.complete = True
+        self.mesh: Mesh | None = None
+
+    # ---- a sequence of steps ---------------------------------------------------------------------
+
+    def __len__(self) -> int:
+        return len(self._steps)
+
+    def __getitem__(self, k: Any) -> Any:
+        return self._steps[k]
+
+    def __iter__(self) -> Iterator[Step]:
+        return iter(self._steps)
+
+    @property
+    def counts(self) -> dict[str, int]:
+        return dict(Counter(step.kind for step in self._steps))
+
+    def frame(self, k: int) -> tuple[np.ndarray, np.ndarray]:
+        """Points and triangles after step ``k``: float64 (n, 2), nan where a point has not come yet; int32 (m, 3)."""
+        k = range(len(self))[k]
+        numbers, coordinates = self._points.at(k)
+        points = np.full((self._points.size, 2), np.nan)
+        points[numbers] = coordinates
+        return points, self._triangles.at(k)[1]
+
+    def min_angles(self) -> np.ndarray:
+        """The smallest angle after each step, in degrees: float64 (len(trace),), nan while there is no triangle."""
+        table, born, died = self._triangles.table(), *self._triangles.lifetimes()
+        coordinates = self._points.final(self._points.size)
+        smallest = angles(coordinates, table).min(axis=1) if len(table) else np.empty(0)
+        result, alive, row = np.full(len(self), np.nan), [], 0
+        for k in range(len(self)):
+            while row < len(table) and born[row] <= k:
+                heapq.heappush(alive, (smallest[row], row))
+                row += 1
+            while alive and died[alive[0][1]] <= k:
+                heapq.heappop(alive)
+            if alive:
+                result[k] = alive[0][0]
+        return result
+
+    # ---- showing ---------------------------------------------------------------------------------
+
+    def draw(self, k: int, ax: Any = None, **options: Any) -> Any:
+        """Draw step ``k`` on Matplotlib axes ``ax``, or as a picture of its own (see ``fem_mesh.watch.draw``)."""
+        from fem_mesh.watch.draw import draw_step
+
+        return draw_step(self, k, ax, **options)
+
+    def save(self, path: Any, **options: Any) -> None:
+        """Write the run as a film (.gif, .mp4) or a contact sheet (.png); the ending decides."""
+        from fem_mesh.watch.film import save_trace
+
+        save_trace(self, path, **options)
+
+    def __repr__(self) -> str:
+        kinds = ", ".join(f"{kind} {count}" for kind, count in self.counts.items())
+        facts = [many(len(self), "step") + (f" ({kinds})" if kinds else "")]
+        if self._steps:
+            points, triangles = self.frame(-1)
+            facts += [f"{len(points)} points", many(len(triangles), "triangle")]
+        return "Trace: " + ", ".join(facts) + ("" if self.complete else ", stopped at the limit")
+
+    def _repr_mimebundle_(self, include: Any = None, exclude: Any = None) -> Any:
+        if not self._steps:
+            return {"text/plain": repr(self)}
+        from fem_mesh.watch.film import picture_of_trace
+
+        return picture_of_trace(self)._repr_mimebundle_()
+
+    # ---- recording -------------------------------------------------------------------------------
+
+    def append(self, step: Step) -> None:
+        """Add a step to the end. A step with full lists is turned into the difference to the frame before."""
+        k = len(self._steps)
+        if step.points is not None or step.triangles is not None:
+            step = self._difference(step)
+        for number, x, y in step.new_points:
+            self._points.end(number, k)
+            self._points.begin(number, (x, y), k)
+        for triangle in step.removed:
+            if not self._triangles.end(_turned(triangle), k):
+                raise MeshError(f"step {k} ({step.kind}) removes triangle {triangle}, which is not there")
+        for triangle in step.added:
+            self._triangles.begin(_turned(triangle), triangle, k)
+        self._steps.append(step)
+
+    def _difference(self, step: Step) -> Step:
+        k = len(self._steps)
+        points = self._points.alive if step.points is None else None
+        if points is None:
+            given = [tuple(map(float, p)) for p in step.points]
+            known = self._points.current()
+            new = [(i, *p) for i, p in enumerate(given) if known.get(i) != p]
+            for number in [i for i in known if i >= len(given)]:
+                self._points.end(number, k)
+        else:
+            new = []
+        before = self._triangles.current()
+        now = before if step.triangles is None else {_turned(t): tuple(map(int, t)) for t in step.triangles}
+        return Step(
+            step.kind,
+            step._caption,  # type: ignore[attr-defined]
+            added=[t for key, t in now.items() if key not in before],
+            removed=[t for key, t in before.items() if key not in now],
+            new_points=new,
+            point=step.point,
+            edges=step.edges,
+            doomed=step.doomed,
+            visited=step.visited,
+            circles=step.circles,
+            **step.facts,
+        )
+
+
+def record(
+    steps: Iterable[Step] | Generator[Step, None, Any],
+    limit: int | None = 200_000,
+    view: tuple[float, float, float, float] | None = None,
+) -> Trace:
+    """Run a generator of steps to its end, or to ``limit`` steps, and keep them all.
+
+    ``view`` = (left, right, bottom, top) fixes what pictures show; without it they show every point.
+    A generator that is still running after ``limit`` steps gives an incomplete trace, which says so.
+
+    >>> def two_triangles():
+    ...     points, triangles = [(0, 0), (1, 0), (0, 1), (1, 1)], [(0, 1, 2)]
+    ...     yield Step("start", "one triangle", points=points, triangles=triangles)
+    ...     triangles.append((1, 3, 2))
+    ...     yield Step("insert", "and another", points=points, triangles=triangles)
+    >>> trace = record(two_triangles())
+    >>> trace[1].added
+    ((1, 3, 2),)
+    >>> trace.mesh
+    Mesh: 4 points, 2 triangles, smallest angle 45.0 degrees
+    """
+    trace = Trace()
+    trace.view = view
+    iterator = iter(steps)
+    result = None
+    while True:  # ends with the generator, or at the limit
+        try:
+            step = next(iterator)
+        except StopIteration as stop:
+            result = stop.value
+            break
+        if limit is not None and len(trace) >= limit:
+            trace.complete = False
+            break
+        if not isinstance(step, Step):
+            raise MeshError(f"step {len(trace)} is {step!r}: a generator to record must yield fm.Step(...)")
+        trace.append(step)
+    trace.mesh = result if isinstance(result, Mesh) else _last_frame(trace)
+    return trace
+
+
+def many(n: int, thing: str) -> str:
+    """"1 flip", "2 flips".
+
+    >>> many(2, "flip")
+    '2 flips'
+    """
+    return f"{n} {thing}{'s' * (n != 1)}"
+
+
+def _last_frame(trace: Trace) -> Mesh | None:
+    if not len(trace):
+        return None
+    points, triangles = trace.frame(-1)
+    return Mesh(points, triangles, np.full((len(triangles), 3), -1, np.int32), note="a last frame, not validated")
+
+
+def _turned(triangle: Any) -> Triangle:
+    """The same triangle with its lowest vertex first."""
+    a, b, c = triangle
+    return (a, b, c) if a < b and a < c else (b, c, a) if b < c else (c, a, b)
+
+
+def _tuples(items: Iterable[Any]) -> tuple[Any, ...]:
+    if isinstance(items, tuple) and (not items or isinstance(items[0], tuple)):
+        return items
+    return tuple(tuple(item.tolist() if hasattr(item, "tolist") else item) for item in items)
+
+
+class _Lifetimes:
+    """Rows of numbers, each under a key, each with the step that began and the step that ended it."""
+
+    def __init__(self, typecode: str, width: int) -> None:
+        self._rows, self._width = array(typecode), width
+        self._born, self._died, self._keys = array("i"), array("i"), array("i")
+        self.alive: dict[Any, int] = {}
+
+    @property
+    def size(self) -> int:
+        """One more than the highest number among the keys (points only)."""
+        return max(self._keys, default=-1) + 1
+
+    def begin(self, key: Any, row: Any, k: int) -> None:
+        self.alive[key] = len(self._born)
+        self._rows.extend(row)
+        self._born.append(k)
+        self._died.append(NEVER)
+        self._keys.append(key if isinstance(key, int) else 0)
+
+    def end(self, key: Any, k: int) -> bool:
+        row = self.alive.pop(key, None)
+        if row is not None:
+            self._died[row] = k
+        return row is not None
+
+    def current(self) -> dict[Any, tuple[Any, ...]]:
+        w = self._width
+        return {key: tuple(self._rows[w * row : w * row + w]) for key, row in self.alive.items()}
+
+    def table(self) -> np.ndarray:
+        return np.array(self._rows).reshape(-1, self._width)
+
+    def lifetimes(self) -> tuple[np.ndarray, np.ndarray]:
+        return np.array(self._born), np.array(self._died)
+
+    def at(self, k: int) -> tuple[np.ndarray, np.ndarray]:
+        """The keys and rows alive after step k."""
+        born, died = self.lifetimes()
+        alive = (born <= k) & (k < died)
+        return np.array(self._keys)[alive], self.table()[alive]
+
+    def final(self, size: int) -> np.ndarray:
+        """The last row of each key."""
+        result = np.full((size, self._width), np.nan)
+        if size:
+            result[np.array(self._keys)] = self.table()
+        return result
