@@ -1,8 +1,59 @@
+"""fem_mesh: Delaunay mesh generation, to watch step by step and to run at full speed.
+
+>>> import fem_mesh as fm
+>>> points = fm.random_points(16, seed=1)
+>>> mesh = fm.delaunay(points)
+>>> mesh
+Mesh: 16 points, 21 triangles, smallest angle 1.6 degrees
+>>> trace = fm.record(fm.lawson(points, fm.any_triangulation(points)))
+>>> trace.counts["flip"]
+18
+"""
+
+from typing import TYPE_CHECKING, Any
+
+from fem_mesh import textbook
 from fem_mesh.algorithms.bowyer_watson import bowyer_watson
 from fem_mesh.algorithms.delaunay import delaunay
-from fem_mesh.steps import record, Step, Trace
-from fem_mesh.mesh.points import *
-from fem_mesh.predicates import orient, in_circle, in_diametral_circle
-from fem_mesh.mesh.mesh import Mesh
 from fem_mesh.algorithms.lawson import lawson
 from fem_mesh.algorithms.sweep import any_triangulation
+from fem_mesh.errors import MeshError
+from fem_mesh.mesh.mesh import Mesh
+from fem_mesh.mesh.points import grid_points, random_points, ring_points
+from fem_mesh.mesh.quality import validate
+from fem_mesh.predicates import in_circle, in_diametral_circle, orient
+from fem_mesh.steps import Step, Trace, record
+
+if TYPE_CHECKING:
+    from fem_mesh.watch.draw import Picture
+
+__version__ = "0.1.0"
+
+__all__ = [
+    "Mesh",
+    "MeshError",
+    "Picture",
+    "Step",
+    "Trace",
+    "any_triangulation",
+    "bowyer_watson",
+    "delaunay",
+    "grid_points",
+    "in_circle",
+    "in_diametral_circle",
+    "lawson",
+    "orient",
+    "random_points",
+    "record",
+    "ring_points",
+    "textbook",
+    "validate",
+]
+
+
+def __getattr__(name: str) -> Any:
+    if name == "Picture":  # Matplotlib is imported when it is first needed
+        from fem_mesh.watch.draw import Picture
+
+        return Picture
+    raise AttributeError(f"module 'fem_mesh' has no attribute {name!r}")

@@ -17,6 +17,7 @@ import numpy as np
 
 from fem_mesh.errors import MeshError
 from fem_mesh.mesh.mesh import Mesh
+from fem_mesh.mesh.points import view_box
 from fem_mesh.mesh.quality import angles
 
 Triangle = tuple[int, int, int]
@@ -115,11 +116,11 @@ class Trace(Sequence[Step]):
     complete : False if ``record`` stopped at its limit
 
     >>> import fem_mesh as fm
-    >>> trace = fm.record(fm.bowyer_watson([(0, 0), (1, 0), (0, 1), (1, 1)]))
+    >>> trace = fm.record(fm.bowyer_watson([(0, 0), (4, 0), (0, 3), (3, 2)]))
     >>> trace
     Trace: 5 steps (start 1, locate 1, cavity 1, insert 1, done 1), 4 points, 2 triangles
     >>> trace[3].caption
-    'point 3 is joined to the 3 edges around the cavity: 2 triangles come, 1 goes'
+    'point 3 is joined to the 2 edges around the cavity: 2 triangles come, 1 goes'
     """
 
     def __init__(self) -> None:
@@ -151,6 +152,16 @@ class Trace(Sequence[Step]):
         points = np.full((self._points.size, 2), np.nan)
         points[numbers] = coordinates
         return points, self._triangles.at(k)[1]
+
+    def all_points(self) -> np.ndarray:
+        """Every point that ever comes, where it was last: float64 (n, 2)."""
+        return self._points.final(self._points.size)
+
+    def view_box(self) -> tuple[float, float, float, float]:
+        """left, right, bottom, top of every picture of this trace."""
+        if self.view is not None:
+            return self.view
+        return view_box(self._points.table())
 
     def min_angles(self) -> np.ndarray:
         """The smallest angle after each step, in degrees: float64 (len(trace),), nan while there is no triangle."""
@@ -216,8 +227,7 @@ class Trace(Sequence[Step]):
 
     def _difference(self, step: Step) -> Step:
         k = len(self._steps)
-        points = self._points.alive if step.points is None else None
-        if points is None:
+        if step.points is not None:
             given = [tuple(map(float, p)) for p in step.points]
             known = self._points.current()
             new = [(i, *p) for i, p in enumerate(given) if known.get(i) != p]
@@ -261,7 +271,7 @@ def record(
     >>> trace[1].added
     ((1, 3, 2),)
     >>> trace.mesh
-    Mesh: 4 points, 2 triangles, smallest angle 45.0 degrees
+    Mesh: 4 points, 2 triangles, smallest angle 45.0 degrees, a last frame, not validated
     """
     trace = Trace()
     trace.view = view

@@ -129,7 +129,7 @@ def _watch(work: Workspace) -> Generator[Step, None, Mesh]:
         else:  # INSERTED
             yield Step(
                 "insert", say_insert, point=point, added=_corners(work, around), removed=doomed, new_points=((p, *point),),
-                edges=edges, p=p,
+                p=p, around=len(edges),
             )  # fmt: skip
     mesh = work.to_mesh()
     yield Step("done", say_done, n=len(mesh.points) - len(mesh.unused), m=len(mesh.triangles))
@@ -165,7 +165,7 @@ def say_locate(step: Step) -> str:
     if step.visited:
         a, b, c = step.visited[0]
         return f"point {p} lies in triangle {a}, {b}, {c}, reached by crossing {crossed}"
-    a, b = step.edges[0]
+    a, b = sorted(step.edges[0])
     return f"point {p} lies outside the hull, beyond edge {a}-{b}, reached by crossing {crossed}"
 
 
@@ -185,7 +185,7 @@ def say_cavity(step: Step) -> str:
 def say_insert(step: Step) -> str:
     comes, goes = len(step.added), len(step.removed)
     change = f"{many(comes, 'triangle')} come{'s' * (comes == 1)}, {goes} go{'es' * (goes == 1)}"
-    return f"point {step.facts['p']} is joined to the {len(step.edges)} edges around the cavity: {change}"
+    return f"point {step.facts['p']} is joined to the {many(step.facts['around'], 'edge')} around the cavity: {change}"
 
 
 def say_done(step: Step) -> str:

@@ -128,7 +128,7 @@ def lawson(points: Any, triangles: Any) -> Generator[Step, None, Mesh]:
     >>> for step in lawson([(0, 0), (4, 0), (5, 3), (1, 2)], [(0, 1, 2), (0, 2, 3)]):
     ...     print(step.kind, "-", step.caption)
     start - 2 triangles on 4 points: 5 edges to test
-    test - edge 0-2 must go: vertex 3 lies inside the circle of 0, 1, 2 (2.02 from its centre, radius 2.92)
+    test - edge 0-2 must go: vertex 1 lies inside the circle of 0, 2, 3 (0.678 from its centre, radius 3.84)
     flip - edge 0-2 is flipped to 1-3
     done - 1 flip after 1 test: every circle is empty
     """
@@ -195,7 +195,7 @@ VERDICTS = {1: "must go: vertex {} lies inside", 0: "stays: vertex {} lies exact
 
 def say_test(step: Step) -> str:
     facts = step.facts
-    (a, b), c = facts["edge"], facts["left"]
+    (a, b), c = sorted(facts["edge"]), facts["left"]
     verdict = VERDICTS[facts["verdict"]].format(facts["right"])
     numbers = f"{facts['distance']:.3g} from its centre, radius {facts['radius']:.3g}"
     return f"edge {a}-{b} {verdict} the circle of {a}, {b}, {c} ({numbers})"
@@ -203,13 +203,14 @@ def say_test(step: Step) -> str:
 
 def say_notch(step: Step) -> str:
     (a, v), (_, b) = step.edges
+    a, b = sorted((a, b))
     return f"the boundary turns inward at vertex {v}: triangle {a}, {v}, {b} will fill the notch"
 
 
 def say_flip(step: Step) -> str:
-    (a, b), (c, d) = step.facts["old"], step.facts["new"]
-    if -1 in (a, b):
-        return f"edge {c}-{d} closes the notch at vertex {max(a, b)}"
+    (a, b), (c, d) = sorted(step.facts["old"]), sorted(step.facts["new"])
+    if a == -1:
+        return f"edge {c}-{d} closes the notch at vertex {b}"
     return f"edge {a}-{b} is flipped to {c}-{d}"
 
 

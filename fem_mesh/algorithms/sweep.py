@@ -26,7 +26,7 @@ def any_triangulation(points: Any) -> np.ndarray:
     triangle exists: fewer than 3 points, or all on one line.
 
     >>> any_triangulation([(0, 0), (1, 2), (2, 1), (3, 3)]).tolist()
-    [[0, 2, 1], [1, 2, 3]]
+    [[1, 0, 2], [1, 2, 3]]
     """
     points = as_points(points)
     line, triangles, rest = _first_fan(points)

@@ -212,11 +212,11 @@ def fan_cavity(p, count, dug, origin, twin, cavity, ring):
 
 @kernel
 def flip(h, origin, twin):
-    """Replace the edge of ``h`` by the other diagonal, cd, of its two triangles; returns its half-edge at c.
+    r"""Replace the edge of ``h`` by the other diagonal, cd, of its two triangles; returns its half-edge at c.
 
     ::
               c                    c
-            / ^ \                /   \\
+            / ^ \                /   \
           /   |   \            /   h   \        h: a -> b becomes d -> b
         d   g | h   ...      d --------- b      g: b -> a becomes c -> a
           \   |   /            \   g   /

@@ -30,7 +30,7 @@ class Mesh:
     >>> import fem_mesh as fm
     >>> mesh = fm.delaunay([(0, 0), (2, 0), (2, 2), (0, 1)])
     >>> mesh
-    Mesh: 4 points, 2 triangles, smallest angle 45.0 degrees
+    Mesh: 4 points, 2 triangles, smallest angle 26.6 degrees
     """
 
     points: np.ndarray

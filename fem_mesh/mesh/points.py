@@ -10,6 +10,7 @@ from fem_mesh.errors import MeshError
 from fem_mesh.predicates import LARGEST, SMALLEST
 
 LARGEST_INTEGER = 2**53  # integers up to here are doubles
+MARGIN = 0.06  # around the points, as a share of their extent
 GRAIN = 2.0**30  # made points are multiples of 2^-30: other machines' sines give the same mesh
 
 
@@ -75,6 +76,16 @@ def _refuse(wrong: np.ndarray, points: np.ndarray, complaint: str) -> None:
     if len(rows):
         more = f" (and {len(rows) - 1} more points)" if len(rows) > 1 else ""
         raise MeshError(f"point {rows[0]} = {tuple(points[rows[0]].tolist())} {complaint}{more}")
+
+
+def view_box(points: np.ndarray) -> tuple[float, float, float, float]:
+    """left, right, bottom, top around points (n, 2), nan rows left out, with a margin."""
+    points = points[~np.isnan(points[:, 0])]
+    if not len(points):
+        return -1.0, 1.0, -1.0, 1.0
+    low, high = points.min(axis=0), points.max(axis=0)
+    margin = MARGIN * (float((high - low).max()) or 1.0)
+    return low[0] - margin, high[0] + margin, low[1] - margin, high[1] + margin
 
 
 # ---- made points -----------------------------------------------------------------------------------

@@ -1,0 +1,87 @@
+"""A trace as a film (.gif, .mp4) or a contact sheet (.png)."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from matplotlib.figure import Figure
+from tqdm import tqdm
+
+from fem_mesh.errors import MeshError
+from fem_mesh.watch.draw import DPI, PAPER, Picture, draw_step, new_axes
+
+if TYPE_CHECKING:
+    from fem_mesh.steps import Trace
+
+SHEET = 12  # frames on a contact sheet
+HOLD = 2.0  # seconds that a film rests on its last frame
+
+
+def save_trace(trace: Trace, path: Any, *, fps: float = 2.0, steps: Iterable[int] | None = None, **options: Any) -> None:
+    """Write a trace to ``path``; the ending decides what it becomes.
+
+    .gif, .mp4 : a film, ``fps`` steps a second; .mp4 needs the program ffmpeg
+    .png : a contact sheet of some 12 steps, or of the ``steps`` given
+
+    ``options`` are those of ``draw_step``. Raises MeshError for an empty trace, another ending, or
+    where ffmpeg is missing.
+    """
+    path = Path(path)
+    if not len(trace):
+        raise MeshError("there is no step to save: the trace is empty")
+    if path.suffix == ".png":
+        contact_sheet(trace, steps, **options).save(path)
+    elif path.suffix in (".gif", ".mp4"):
+        _save_film(trace, path, fps, range(len(trace)) if steps is None else steps, options)
+    else:
+        raise MeshError(f"a trace is saved as .gif, .mp4 or .png, not as {path.suffix or path.name!r}")
+
+
+def contact_sheet(trace: Trace, steps: Iterable[int] | None = None, **options: Any) -> Picture:
+    """Some steps of a trace on one sheet, in reading order."""
+    chosen = list(steps) if steps is not None else choose_steps(len(trace))
+    columns = min(4, max(1, int(np.ceil(np.sqrt(len(chosen))))))
+    rows = -(-len(chosen) // columns)
+    dark = bool(options.get("dark", False))
+    figure = Figure(figsize=(5.2 * columns, 4.9 * rows), facecolor=PAPER[dark])
+    axes = figure.subplots(rows, columns, squeeze=False)
+    figure.subplots_adjust(left=0.015, right=0.985, top=1 - 0.85 / (4.9 * rows), bottom=0.35 / (4.9 * rows), hspace=0.32, wspace=0.06)
+    for ax in axes.flat:
+        ax.set_axis_off()
+    for ax, k in zip(axes.flat, tqdm(chosen, desc="drawing", delay=2, leave=False), strict=False):
+        draw_step(trace, k, ax, **options)
+    return Picture(figure, f"{len(chosen)} of {len(trace)} steps: " + ", ".join(f"{k} {trace[k].kind}" for k in chosen))
+
+
+def picture_of_trace(trace: Trace) -> Picture:
+    """What a notebook shows for a trace: its last frame, under its line of facts."""
+    page = new_axes()
+    draw_step(trace, len(trace) - 1, page)
+    page.set_title(repr(trace), loc="left", fontsize=10, wrap=True)
+    return Picture(page.figure, repr(trace))  # type: ignore[arg-type]
+
+
+def choose_steps(n: int) -> list[int]:
+    """Up to a sheet's worth of step numbers, evenly from the first to the last."""
+    return sorted({int(k) for k in np.linspace(0, n - 1, min(n, SHEET)).round()})
+
+
+def _save_film(trace: Trace, path: Path, fps: float, steps: Iterable[int], options: dict[str, Any]) -> None:
+    from matplotlib.animation import FFMpegWriter, FuncAnimation, PillowWriter
+
+    if path.suffix == ".mp4" and shutil.which("ffmpeg") is None:
+        raise MeshError("an .mp4 needs the program ffmpeg, which is not installed: save a .gif instead")
+    page = new_axes(bool(options.get("dark", False)))
+    frames = list(steps)
+    frames += frames[-1:] * int(HOLD * fps)
+    film = FuncAnimation(page.figure, lambda k: (draw_step(trace, k, page, **options),), frames, init_func=lambda: ())  # type: ignore[arg-type, return-value]
+    writer = PillowWriter(fps=fps) if path.suffix == ".gif" else FFMpegWriter(fps=fps)  # type: ignore[arg-type]
+    with tqdm(total=len(frames), desc=path.name, delay=2, leave=False) as bar:
+        film.save(
+            str(path), writer=writer, dpi=DPI, savefig_kwargs={"facecolor": page.figure.get_facecolor()},
+            progress_callback=lambda _frame, _total: bar.update(),
+        )  # fmt: skip

@@ -1,0 +1,50 @@
+"""The roles that things play in a picture: one table for every renderer.
+
+Each role has a colour of Okabe and Ito's palette (2008), readable to colour-blind eyes; a second cue,
+so that colour never carries meaning alone; and the word that captions and legends use.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+BLACK, ORANGE, SKY, GREEN = "#000000", "#E69F00", "#56B4E9", "#009E73"
+BLUE, VERMILLION, PURPLE = "#0072B2", "#D55E00", "#CC79A7"
+
+
+@dataclass(frozen=True)
+class Role:
+    """How one role looks. ``dark`` is its colour on a dark ground."""
+
+    word: str
+    color: str
+    dark: str
+    width: float = 1.0  # of lines, in points
+    dash: tuple[float, ...] = ()  # on and off lengths, in line widths
+    hatch: str = ""
+    fill: float = 0.0  # opacity
+    marker: str = ""
+    size: float = 0.0  # of markers, in points
+
+
+ROLES = {
+    "mesh": Role("triangle", "#777777", "#9A9A9A", width=0.9),
+    "visited": Role("looked at", BLUE, SKY, width=1.6, hatch="..", fill=0.14),
+    "doomed": Role("about to go", VERMILLION, "#FF8A4C", width=1.8, hatch="///", fill=0.20),
+    "gone": Role("gone", VERMILLION, "#FF8A4C", width=1.6, dash=(2.0, 2.0)),
+    "new": Role("new", GREEN, "#2FD1A2", width=2.2, fill=0.22),
+    "circle": Role("circumcircle", BLUE, SKY, width=1.1, dash=(6.0, 3.0)),
+    "edge": Role("edge", ORANGE, ORANGE, width=4.0),
+    "segment": Role("segment", BLACK, "#FFFFFF", width=3.2),
+    "vertex": Role("vertex", "#222222", "#DDDDDD", marker="o", size=4.5),
+    "waiting": Role("to come", "#888888", "#888888", marker="o", size=3.5),
+    "point": Role("point", PURPLE, "#F29BC9", width=2.4, marker="o", size=13.0),
+}
+
+PAPER = {False: "#FFFFFF", True: "#111318"}
+INK = {False: "#1A1A1A", True: "#EDEDED"}
+
+
+def color_of(name: str, dark: bool = False) -> str:
+    """The colour of a role on a light or a dark ground."""
+    return ROLES[name].dark if dark else ROLES[name].color
