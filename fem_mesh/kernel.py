@@ -29,6 +29,7 @@ SMALL = 3_000  # below this size a first call runs in plain Python rather than w
 PATIENCE = 2.0  # seconds of compiling before a line says so
 
 _kernels: list[Callable[..., Any]] = []
+_inlined: set[Callable[..., Any]] = set()
 _compiled: dict[Callable[..., Any], Any] = {}
 _lock = threading.RLock()
 
@@ -37,6 +38,13 @@ def kernel(function: Function) -> Function:
     """Note ``function`` as a kernel: it stays callable as it is, and compiled code may call it too."""
     _kernels.append(function)
     return function
+
+
+def inlined_kernel(function: Function) -> Function:
+    """A kernel that compiled code takes in where it is called: for innermost loops, where handing over
+    half a dozen arrays would cost as much as the work."""
+    _inlined.add(function)
+    return kernel(function)
 
 
 def index(i: int) -> int:
@@ -203,7 +211,9 @@ def _numba() -> Any:
 
             for function in _kernels:
                 if not hasattr(function, "__numba_registered__"):
-                    function.__numba_registered__ = register_jitable(error_model="numpy")(function)
+                    inline = "always" if function in _inlined else "never"
+                    register_jitable(error_model="numpy", inline=inline)(function)
+                    function.__numba_registered__ = True  # type: ignore[attr-defined]
         return _numba_module
 
 

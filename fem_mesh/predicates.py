@@ -301,39 +301,30 @@ def top(e, n):
 @kernel
 def expand_cross(e, ax, ay, bx, by, cx, cy):
     """(a - c) x (b - c), without error."""
-    n = grow_by_product(e, 0, ax, by)
-    n = grow_by_product(e, n, -ay, bx)
-    n = grow_by_product(e, n, bx, cy)
-    n = grow_by_product(e, n, -by, cx)
-    n = grow_by_product(e, n, cx, ay)
-    return grow_by_product(e, n, -cy, ax)
+    n = 0
+    for p, q in ((ax, by), (-ay, bx), (bx, cy), (-by, cx), (cx, ay), (-cy, ax)):
+        n = grow_by_product(e, n, p, q)
+    return n
 
 
 @kernel
 def expand_dot(e, ax, ay, bx, by, px, py):
     """(a - p) . (b - p), without error."""
-    n = grow_by_product(e, 0, ax, bx)
-    n = grow_by_product(e, n, -ax, px)
-    n = grow_by_product(e, n, -px, bx)
-    n = grow_by_product(e, n, px, px)
-    n = grow_by_product(e, n, ay, by)
-    n = grow_by_product(e, n, -ay, py)
-    n = grow_by_product(e, n, -py, by)
-    return grow_by_product(e, n, py, py)
+    n = 0
+    for p, q in ((ax, bx), (-ax, px), (-px, bx), (px, px), (ay, by), (-ay, py), (-py, by), (py, py)):
+        n = grow_by_product(e, n, p, q)
+    return n
 
 
 @kernel
 def expanded_in_circle_sign(ax, ay, bx, by, cx, cy, dx, dy):
     sine, cosine, det = scratch(MOST_TERMS), scratch(MOST_TERMS), scratch(MOST_TERMS)
-    sines = expand_cross(sine, ax, ay, bx, by, cx, cy)
-    cosines = expand_dot(cosine, bx, by, ax, ay, dx, dy)
     n = 0
-    for i in range(sines):
-        for j in range(cosines):
-            n = grow_by_product(det, n, sine[i], cosine[j])
-    sines = expand_cross(sine, bx, by, ax, ay, dx, dy)
-    cosines = expand_dot(cosine, ax, ay, bx, by, cx, cy)
-    for i in range(sines):
-        for j in range(cosines):
-            n = grow_by_product(det, n, sine[i], cosine[j])
+    for px, py, qx, qy in ((cx, cy, dx, dy), (dx, dy, cx, cy)):  # sin C cos D, and sin D cos C with ab reversed
+        sines = expand_cross(sine, ax, ay, bx, by, px, py)
+        cosines = expand_dot(cosine, bx, by, ax, ay, qx, qy)
+        for i in range(sines):
+            for j in range(cosines):
+                n = grow_by_product(det, n, sine[i], cosine[j])
+        ax, ay, bx, by = bx, by, ax, ay
     return -top(det, n)

@@ -16,7 +16,7 @@ The circle of a ghost triangle is the open half-plane outside its hull edge, and
 
 from __future__ import annotations
 
-from fem_mesh.kernel import index, kernel
+from fem_mesh.kernel import index, inlined_kernel, kernel
 from fem_mesh.predicates import in_circle_sign, in_diametral_circle_sign, orient_sign
 
 GHOST = 0
@@ -101,7 +101,7 @@ def is_right_of(h, px, py, xy, origin):
     return orient_sign(xy[a, 0], xy[a, 1], xy[b, 0], xy[b, 1], px, py) < 0.0
 
 
-@kernel
+@inlined_kernel
 def locate(h, px, py, xy, origin, twin):
     """Walk from the triangle of ``h`` to p, always across an edge that has p beyond it.
 
@@ -136,7 +136,7 @@ def vertex_at(h, px, py, xy, origin):
     return index(GHOST)
 
 
-@kernel
+@inlined_kernel
 def in_conflict(h, px, py, xy, origin):
     """Whether p lies strictly inside the circle of h's triangle (for a ghost: beyond its hull edge)."""
     a, b, c = origin[h], origin[next_edge(h)], origin[prev_edge(h)]
@@ -164,7 +164,7 @@ def is_beyond_edge(a, b, px, py, xy):
 # ---- changes ---------------------------------------------------------------------------------------
 
 
-@kernel
+@inlined_kernel
 def dig_cavity(h, px, py, xy, origin, twin, cavity, ring):
     """Collect the triangles in conflict with p, and the half-edges around them seen from outside.
 
@@ -194,7 +194,7 @@ def dig_cavity(h, px, py, xy, origin, twin, cavity, ring):
     return dug
 
 
-@kernel
+@inlined_kernel
 def fan_cavity(p, count, dug, origin, twin, cavity, ring):
     """Replace the cavity by triangles from ``p`` to each edge of its ring.
 

@@ -41,16 +41,16 @@ def as_points(points: Any) -> np.ndarray:
     except (TypeError, ValueError, OverflowError):
         row = next(i for i, pair in enumerate(given) if not _are_numbers(pair))
         raise MeshError(f"point {row} is {tuple(given[row].tolist())!r}, not a pair of numbers") from None
-    _refuse(~np.isfinite(result), result, "is not finite: drop it, or repair what made it")
-    with np.errstate(over="ignore"):
-        if given.dtype.kind in "iu":
-            too_large = (given > LARGEST_INTEGER) | (given < -LARGEST_INTEGER)
-            _refuse(too_large, given, "has an integer above 2^53, which no double holds: shift or scale the points")
-        elif given.dtype != np.float64:
-            _refuse(given != result, given, "is no pair of doubles: round it yourself, or scale the points")
+    if given.dtype.kind in "iu":
+        too_large = (given > LARGEST_INTEGER) | (given < -LARGEST_INTEGER)
+        _refuse(too_large, given, "has an integer above 2^53, which no double holds: shift or scale the points")
+    elif given.dtype != np.float64:
+        _refuse((given != result) & np.isfinite(result), given, "is no pair of doubles: round it, or scale the points")
     magnitude = np.abs(result)
-    outside = ((magnitude < SMALLEST) & (magnitude > 0)) | (magnitude > LARGEST)
-    _refuse(outside, result, "has a magnitude outside 2^-142 .. 2^201, where signs are not exact: scale the points")
+    if not ((magnitude <= LARGEST) & ((magnitude >= SMALLEST) | (magnitude == 0))).all():
+        _refuse(~np.isfinite(result), result, "is not finite: drop it, or repair what made it")
+        outside = (magnitude > LARGEST) | ((magnitude < SMALLEST) & (magnitude != 0))
+        _refuse(outside, result, "has a magnitude outside 2^-142 .. 2^201, where signs are not exact: scale the points")
     result += 0.0  # -0.0 is 0.0
     return result
 

@@ -112,10 +112,12 @@ class Workspace:
             self.merged[v + 1] = vertex[point]
 
     def to_mesh(self) -> Mesh:
-        """The mesh that stands in the arrays, under the user's numbers."""
-        count = int(self.state[COUNT])
-        number = np.empty(count, np.int32)
-        triangles, neighbors = np.empty((count, 3), np.int32), np.empty((count, 3), np.int32)
+        """The mesh that stands in the arrays, under the user's numbers.
+
+        It takes over the memory of the half-edges: this workspace is spent.
+        """
+        number = np.empty(int(self.state[COUNT]), np.int32)
+        triangles, neighbors = (array.view(np.int32).reshape(-1, 3) for array in (self.origin, self.twin))
         arrays = (self.origin, self.twin, self.name, number, triangles, neighbors)
         m = call(list_triangles, *arrays, size=len(self.points))
         n = len(self.points)
@@ -199,7 +201,11 @@ def close_boundary(boundary, m, origin, twin, ghost_of):
 
 @kernel
 def list_triangles(origin, twin, name, number, triangles, neighbors):
-    """Write out the real triangles under the user's names, and their neighbours; returns how many."""
+    """Write out the real triangles under the user's names, and their neighbours; returns how many.
+
+    ``triangles`` and ``neighbors`` may be the memory of ``origin`` and ``twin``: each triangle is read
+    before it is written, to its own place or an earlier one.
+    """
     m = 0
     for t in range(len(number)):
         if is_ghost_triangle(index(3 * t), origin):
@@ -210,8 +216,10 @@ def list_triangles(origin, twin, name, number, triangles, neighbors):
     for t in range(len(number)):
         if number[t] >= 0:
             row, h = index(number[t]), index(3 * t)
-            for i in range(3):
-                triangles[row, i] = name[origin[h + i]]
-                opposite = next_edge(index(h + i))
-                neighbors[row, i] = number[triangle_of(twin[opposite])]
+            a, b, c = origin[h], origin[index(h + 1)], origin[index(h + 2)]
+            across_ab, across_bc, across_ca = twin[h], twin[index(h + 1)], twin[index(h + 2)]
+            triangles[row, 0], triangles[row, 1], triangles[row, 2] = name[a], name[b], name[c]
+            neighbors[row, 0] = number[triangle_of(across_bc)]
+            neighbors[row, 1] = number[triangle_of(across_ca)]
+            neighbors[row, 2] = number[triangle_of(across_ab)]
     return m
