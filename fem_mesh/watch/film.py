@@ -15,7 +15,7 @@ from fem_mesh.errors import MeshError
 from fem_mesh.watch.draw import DPI, PAPER, Picture, draw_step, new_axes
 
 if TYPE_CHECKING:
-    from fem_mesh.steps import Trace
+    from fem_mesh.trace import Trace
 
 SHEET = 12  # frames on a contact sheet
 HOLD = 2.0  # seconds that a film rests on its last frame

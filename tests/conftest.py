@@ -1,0 +1,9 @@
+from hypothesis import settings
+
+settings.register_profile("default", deadline=None, max_examples=60, derandomize=True)
+settings.register_profile("exhaustive", deadline=None, max_examples=2000)
+
+
+def pytest_configure(config):
+    chosen = "exhaustive" if config.option.markexpr == "exhaustive" else "default"
+    settings.load_profile(chosen)
