@@ -12,6 +12,7 @@ This is the only file that knows Numba.
 
 from __future__ import annotations
 
+import collections
 import hashlib
 import inspect
 import sys
@@ -57,13 +58,18 @@ def scratch(n: int) -> list[float]:
     return [0.0] * n
 
 
+def view(array: np.ndarray) -> memoryview:
+    """The same memory, handing out Python's own numbers."""
+    return memoryview(array)  # type: ignore[arg-type]
+
+
 def watch(generator: Callable[..., Iterator[tuple[int, int]]], state: Sequence[np.ndarray]) -> Iterator[tuple[int, int]]:
     """Iterate a generator kernel in plain Python, yielding each event as it happens.
 
-    The kernel gets memoryviews of the same arrays: they hand out Python's own ints and floats, which
-    are faster than NumPy's scalars and neither wrap nor warn.
+    The kernel gets views of the same arrays that hand out Python's own ints and floats, which are
+    faster than NumPy's scalars and neither wrap nor warn.
     """
-    return generator(*(memoryview(array) for array in state))
+    return generator(*map(view, state))
 
 
 def run(
@@ -81,10 +87,8 @@ def run(
     """
     arguments = (tuple(state), EVENTS_A_CALL)
     if not worth_compiling(generator, arguments, size):
-        last = (0, 0)
-        for last in watch(generator, state):
-            pass
-        return last
+        events = collections.deque(watch(generator, state), maxlen=1)
+        return events[-1] if events else (0, 0)
     drain = compile_driver(generator, state)
     last = (0, 0)
     with _progress(total, generator.__name__) as bar:
@@ -100,7 +104,7 @@ def run(
 def call(function: Callable[..., Any], *arguments: Any, size: int) -> Any:
     """Call a kernel that is no generator: compiled if that is at hand or worth its wait."""
     if not worth_compiling(function, (arguments,), size):
-        return function(*(memoryview(a) if isinstance(a, np.ndarray) else a for a in arguments))
+        return function(*(view(a) if isinstance(a, np.ndarray) else a for a in arguments))
     return compile_call(function, arguments)(arguments)
 
 
@@ -111,14 +115,14 @@ def worth_compiling(function: Callable[..., Any], arguments: tuple[Any, ...], si
     return function in _compiled and _types(arguments) in _compiled[function].overloads
 
 
-def compile_driver(generator: Callable[..., Iterator[tuple[int, int]]], state: Sequence[np.ndarray]) -> Callable[..., Any]:
+def compile_driver(generator: Callable[..., Iterator[tuple[int, int]]], state: Sequence[np.ndarray]) -> Any:
     """The compiled driver of a generator kernel, compiled for these arrays if it was not yet."""
     fingerprint = _fingerprint(generator)
 
     def drain(arrays: Any, budget: int) -> tuple[bool, int, int]:
         fingerprint  # noqa: B018  (a closure's cells are part of Numba's cache key)
         event, where = 0, 0
-        for event, where in generator(*arrays):  # noqa: B007
+        for event, where in generator(*arrays):
             budget -= 1
             if budget <= 0 and event >= SETTLED:
                 return False, event, where
@@ -127,7 +131,7 @@ def compile_driver(generator: Callable[..., Iterator[tuple[int, int]]], state: S
     return _compile(generator, drain, (tuple(state), EVENTS_A_CALL))
 
 
-def compile_call(function: Callable[..., Any], arguments: tuple[Any, ...]) -> Callable[..., Any]:
+def compile_call(function: Callable[..., Any], arguments: tuple[Any, ...]) -> Any:
     """A compiled ``call(arguments)`` of a kernel, compiled for these arguments if it was not yet."""
     fingerprint = _fingerprint(function)
 
@@ -138,7 +142,7 @@ def compile_call(function: Callable[..., Any], arguments: tuple[Any, ...]) -> Ca
     return _compile(function, call, (arguments,))
 
 
-def _compile(function: Callable[..., Any], driver: Callable[..., Any], arguments: tuple[Any, ...]) -> Callable[..., Any]:
+def _compile(function: Callable[..., Any], driver: Callable[..., Any], arguments: tuple[Any, ...]) -> Any:
     numba = _numba()
     with _lock:
         if function not in _compiled:

@@ -138,9 +138,7 @@ def in_circle_sign(ax, ay, bx, by, cx, cy, dx, dy):
     b_lift = bdx * bdx + bdy * bdy
     c_lift = cdx * cdx + cdy * cdy
     det = a_lift * (bc1 - bc2) + b_lift * (ca1 - ca2) + c_lift * (ab1 - ab2)
-    permanent = (
-        (abs(bc1) + abs(bc2)) * a_lift + (abs(ca1) + abs(ca2)) * b_lift + (abs(ab1) + abs(ab2)) * c_lift
-    )
+    permanent = (abs(bc1) + abs(bc2)) * a_lift + (abs(ca1) + abs(ca2)) * b_lift + (abs(ab1) + abs(ab2)) * c_lift
     if abs(det) >= IN_CIRCLE_BOUND * permanent:
         return det
     return exact_in_circle_sign(ax, ay, bx, by, cx, cy, dx, dy)
@@ -189,12 +187,7 @@ def compare_products(a, b, c, d):
 
 @kernel
 def exact_orient_sign(ax, ay, bx, by, cx, cy):
-    if (
-        exact_difference(ax, cx)
-        and exact_difference(by, cy)
-        and exact_difference(ay, cy)
-        and exact_difference(bx, cx)
-    ):
+    if exact_difference(ax, cx) and exact_difference(by, cy) and exact_difference(ay, cy) and exact_difference(bx, cx):
         return compare_products(ax - cx, by - cy, ay - cy, bx - cx)
     e = scratch(MOST_TERMS)
     return top(e, expand_cross(e, ax, ay, bx, by, cx, cy))
@@ -202,12 +195,7 @@ def exact_orient_sign(ax, ay, bx, by, cx, cy):
 
 @kernel
 def exact_dot_sign(ax, ay, bx, by, px, py):
-    if (
-        exact_difference(ax, px)
-        and exact_difference(bx, px)
-        and exact_difference(ay, py)
-        and exact_difference(by, py)
-    ):
+    if exact_difference(ax, px) and exact_difference(bx, px) and exact_difference(ay, py) and exact_difference(by, py):
         return compare_products(ax - px, bx - px, -(ay - py), by - py)
     e = scratch(MOST_TERMS)
     return top(e, expand_dot(e, ax, ay, bx, by, px, py))
@@ -242,9 +230,7 @@ def exact_in_circle_sign(ax, ay, bx, by, cx, cy, dx, dy):
         p, p_lost = two_product(sin_c, cos_d)
         q, q_lost = two_product(cos_c, sin_d)
         s, s_lost = two_sum(p, q)
-        s_lost += (p_lost + q_lost) + (
-            (sin_c * cos_d_lost + sin_c_lost * cos_d) + (cos_c * sin_d_lost + cos_c_lost * sin_d)
-        )
+        s_lost += (p_lost + q_lost) + ((sin_c * cos_d_lost + sin_c_lost * cos_d) + (cos_c * sin_d_lost + cos_c_lost * sin_d))
         det = s + s_lost
         if abs(det) > MIDDLE_BOUND * (sin_c_size * cos_d_size + cos_c_size * sin_d_size):
             return -det

@@ -93,7 +93,7 @@ class Step:
 
 
 def many(n: int, thing: str) -> str:
-    """"1 flip", "2 flips".
+    """ "1 flip", "2 flips".
 
     >>> many(2, "flip")
     '2 flips'

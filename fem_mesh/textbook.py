@@ -95,7 +95,9 @@ def bowyer_watson(
         ring = [edge for t in bad for edge in sides(t) if count[frozenset(edge)] == 1]
         triangles = [t for t in triangles if t not in bad] + [(u, v, p) for u, v in ring]
         goes = f"{len(bad)} triangle{'s go' if len(bad) != 1 else ' goes'}"
-        yield Step("insert", f"point {p}: {goes}, {len(ring)} come", points=everything, triangles=triangles, point=everything[p])
+        yield Step(
+            "insert", f"point {p}: {goes}, {len(ring)} come", points=everything, triangles=triangles, point=everything[p]
+        )
     kept = [t for t in triangles if max(t) < n]
     caption = f"{len(kept)} triangle{'s' * (len(kept) != 1)} without the super-triangle"
     yield Step("done", caption, points=points, triangles=kept)

@@ -91,7 +91,8 @@ class Trace(Sequence[Step]):
         table, born, died = self._triangles.table(), *self._triangles.lifetimes()
         coordinates = self._points.final(self._points.size)
         smallest = angles(coordinates, table).min(axis=1) if len(table) else np.empty(0)
-        result, alive, row = np.full(len(self), np.nan), [], 0
+        result, row = np.full(len(self), np.nan), 0
+        alive: list[tuple[float, int]] = []  # a heap of angle and row
         for k in range(len(self)):
             while row < len(table) and born[row] <= k:
                 heapq.heappush(alive, (smallest[row], row))

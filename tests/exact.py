@@ -79,22 +79,22 @@ def apexes(triangles: Iterable[Sequence[int]]) -> dict[tuple[int, int], int]:
 
 def check_triangulation(points: Iterable[Sequence[float]], triangles: Sequence[Sequence[int]]) -> None:
     """Counter-clockwise triangles on all the distinct points that cover the convex hull, once."""
-    P = integers(points)
-    areas = [turn(*(P[v] for v in triangle)) for triangle in triangles]
+    whole = integers(points)
+    areas = [turn(*(whole[v] for v in triangle)) for triangle in triangles]
     assert min(areas) > 0
-    assert {P[v] for triangle in triangles for v in triangle} == set(P)
-    left, border = apexes(triangles), hull(P)
-    assert {(P[a], P[b]) for a, b in left if (b, a) not in left} == set(sides(border))
+    assert {whole[v] for triangle in triangles for v in triangle} == set(whole)
+    left, border = apexes(triangles), hull(whole)
+    assert {(whole[a], whole[b]) for a, b in left if (b, a) not in left} == set(sides(border))
     assert sum(areas) == hull_area(points)
-    assert len(triangles) == 2 * len(set(P)) - len(border) - 2
+    assert len(triangles) == 2 * len(set(whole)) - len(border) - 2
 
 
 def check_every_circle(points: Iterable[Sequence[float]], triangles: Sequence[Sequence[int]]) -> None:
     """No point lies strictly inside any triangle's circle: every triangle against every point."""
-    P = integers(points)
-    lifted = [(x, y, lift((x, y))) for x, y in P]
+    whole = integers(points)
+    lifted = [(x, y, lift((x, y))) for x, y in whole]
     for triangle in triangles:
-        p, q, r, s = plane(*(P[v] for v in triangle))
+        p, q, r, s = plane(*(whole[v] for v in triangle))
         assert min(p * x + q * y + r * z for x, y, z in lifted) == s, f"the circle of {tuple(triangle)} is not empty"
 
 
@@ -109,5 +109,5 @@ def is_unique(points: Iterable[Sequence[float]], triangles: Sequence[Sequence[in
 
 
 def signs_across_edges(points: Iterable[Sequence[float]], triangles: Sequence[Sequence[int]]) -> list[int]:
-    P, left = integers(points), apexes(triangles)
-    return [-inside(P[a], P[b], P[c], P[left[b, a]]) for (a, b), c in left.items() if a < b and (b, a) in left]
+    whole, left = integers(points), apexes(triangles)
+    return [-inside(whole[a], whole[b], whole[c], whole[left[b, a]]) for (a, b), c in left.items() if a < b and (b, a) in left]

@@ -6,8 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import fem_mesh as fm
-from fem_mesh.kernel import watch
 from fem_mesh.algorithms.bowyer_watson import insert_points, insertion_state
+from fem_mesh.kernel import watch
 from fem_mesh.mesh.halfedge import (
     GHOST,
     flip,

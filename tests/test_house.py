@@ -10,7 +10,18 @@ import fem_mesh as fm
 
 ROOT = Path(fm.__file__).parent
 FILES = sorted(path for path in ROOT.rglob("*.py") if path.name != "__init__.py")
-FLOORS = ["errors", "kernel", "predicates", "mesh", "steps", "textbook", "algorithms", "trace", "watch", "course"]  # from the ground up
+FLOORS = [
+    "errors",
+    "kernel",
+    "predicates",
+    "mesh",
+    "steps",
+    "textbook",
+    "algorithms",
+    "trace",
+    "watch",
+    "course",
+]  # from the ground up
 SHOWING = {  # the methods that show or export import what they call inside themselves
     ("mesh/mesh.py", "fem_mesh.watch.draw"),
     ("trace.py", "fem_mesh.watch.draw"),
@@ -53,6 +64,17 @@ def test_rooms_stay_small(path):
         if isinstance(node, ast.FunctionDef):
             body = node.end_lineno - node.lineno + 1 - len((ast.get_docstring(node) or "").splitlines())
             assert body <= 50, f"{path.name}: {node.name} has {body} lines"
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda path: str(path.relative_to(ROOT)))
+def test_every_function_but_kernels_states_its_types(path):
+    for node in ast.walk(ast.parse(path.read_text())):
+        if isinstance(node, ast.FunctionDef) and not any("kernel" in ast.unparse(d) for d in node.decorator_list):
+            if node.name in ("_index", "_scratch"):  # Numba reads these
+                continue
+            arguments = [*node.args.posonlyargs, *node.args.args, *node.args.kwonlyargs]
+            assert node.returns is not None, f"{path.name}: {node.name}"
+            assert all(a.annotation for a in arguments if a.arg not in ("self", "cls")), f"{path.name}: {node.name}"
 
 
 @pytest.mark.parametrize("name", sorted(fm.__all__))

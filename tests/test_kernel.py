@@ -90,7 +90,7 @@ def test_a_watched_generator_can_be_dropped_too():
         event = 1
         while event:
             event = 0
-            for event, _ in kernel.watch(generator, state):  # noqa: B007
+            for event, _ in kernel.watch(generator, state):
                 if event == INSERTED:
                     break
 
@@ -158,7 +158,8 @@ EDITED = """
 
 def test_an_edited_kernel_never_meets_a_stale_compiled_driver(tmp_path):
     rule = tmp_path / "rule.py"
-    before = "from fem_mesh.kernel import kernel\n@kernel\ndef factor():\n    return {}\n@kernel\ndef double(a):\n    return a[0] * factor()\n"
+    factor = "from fem_mesh.kernel import kernel\n@kernel\ndef factor():\n    return {}\n"
+    before = factor + "@kernel\ndef double(a):\n    return a[0] * factor()\n"
     printed = []
     for value in (2.0, 3.0):
         rule.write_text(before.format(value))
@@ -197,7 +198,7 @@ def test_a_kernel_typed_into_a_script_compiles(tmp_path):
 
 
 def test_importing_the_library_imports_neither_numba_nor_matplotlib_nor_widgets(tmp_path):
-    heavy = "numba matplotlib ipywidgets scipy tqdm IPython".split()
+    heavy = ["numba", "matplotlib", "ipywidgets", "scipy", "tqdm", "IPython"]
     code = f"import sys, fem_mesh\nprint([name for name in {heavy!r} if name in sys.modules])"
     assert run(code, tmp_path) == "[]"
 

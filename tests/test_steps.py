@@ -165,7 +165,7 @@ def test_a_generator_that_yields_no_steps_is_told_what_to_yield():
 
 
 def test_removing_a_triangle_that_is_not_there_is_an_error():
-    with pytest.raises(fm.MeshError, match="step 0 .flip. removes triangle"):
+    with pytest.raises(fm.MeshError, match=r"step 0 .flip. removes triangle"):
         fm.record([fm.Step("flip", removed=[(0, 1, 2)])])
 
 

@@ -47,7 +47,11 @@ def test_drawing_opens_no_window_and_leaves_no_figure_behind(trace):
 def test_every_step_can_be_drawn_in_every_way(trace, options):
     for k in range(len(trace)):
         trace.draw(k, **options)
-    for step_of in (fm.bowyer_watson(fm.grid_points(3)), fm.bowyer_watson([(0, 0), (1, 1)]), fm.textbook.bowyer_watson([(0.5, 0.5)])):
+    for step_of in (
+        fm.bowyer_watson(fm.grid_points(3)),
+        fm.bowyer_watson([(0, 0), (1, 1)]),
+        fm.textbook.bowyer_watson([(0.5, 0.5)]),
+    ):
         other = fm.record(step_of)
         for k in range(len(other)):
             other.draw(k, **options)._repr_mimebundle_()

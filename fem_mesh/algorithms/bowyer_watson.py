@@ -115,8 +115,8 @@ def _watch(work: Workspace) -> Generator[Step, None, Mesh]:
             corners = work.corners(where // 3)
             crossed, walked = work.state.item(WALKED) - walked, work.state.item(WALKED)
             visited = (corners,) if corners else ()
-            edges = () if corners else (_hull_edge(work, where // 3),)
-            yield Step("locate", say_locate, point=point, visited=visited, edges=edges, p=p, crossed=crossed)
+            beyond = () if corners else (_hull_edge(work, where // 3),)
+            yield Step("locate", say_locate, point=point, visited=visited, edges=beyond, p=p, crossed=crossed)
         elif event == MERGED:
             v = work.name.item(work.merged.item(where))
             yield Step("merge", say_merge, point=point, p=p, v=v)

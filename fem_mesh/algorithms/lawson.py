@@ -141,6 +141,7 @@ def _watch(work: Workspace) -> Generator[Step, None, Mesh]:
     edges = len({frozenset(e) for a, b, c in start for e in ((a, b), (b, c), (c, a))})
     yield Step("start", say_start, added=start, new_points=[(v, *work.points[v].tolist()) for v in used], edge_count=edges)
     before: tuple[Triangle, ...] = ()
+    edge = (-1, -1)
     flips = tests = 0
     for event, h in watch(flip_edges, flip_state(work)):
         if event == FLIP:

@@ -10,6 +10,7 @@ once, and each hull edge that is covered was made once: O(n log n).
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -58,8 +59,7 @@ def _first_fan(points: np.ndarray) -> tuple[list[int], list[tuple[int, int, int]
         p = order[i]
         side = _turn(points, line[0], line[1], p)
         if side:
-            pairs = zip(line, line[1:], strict=False)
-            return line, [(a, b, p) if side > 0 else (b, a, p) for a, b in pairs], order[i + 1 :]
+            return line, [(a, b, p) if side > 0 else (b, a, p) for a, b in pairwise(line)], order[i + 1 :]
         line.append(p)
     return line, [], []
 

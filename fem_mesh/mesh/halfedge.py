@@ -142,9 +142,7 @@ def in_conflict(h, px, py, xy, origin):
     a, b, c = origin[h], origin[next_edge(h)], origin[prev_edge(h)]
     if is_ghost(a) or is_ghost(b) or is_ghost(c):
         return is_beyond(ghost_edge(h, origin), px, py, xy, origin)
-    return (
-        in_circle_sign(xy[a, 0], xy[a, 1], xy[b, 0], xy[b, 1], xy[c, 0], xy[c, 1], px, py) > 0.0
-    )
+    return in_circle_sign(xy[a, 0], xy[a, 1], xy[b, 0], xy[b, 1], xy[c, 0], xy[c, 1], px, py) > 0.0
 
 
 @kernel

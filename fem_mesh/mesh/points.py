@@ -85,7 +85,8 @@ def view_box(points: np.ndarray) -> tuple[float, float, float, float]:
         return -1.0, 1.0, -1.0, 1.0
     low, high = points.min(axis=0), points.max(axis=0)
     margin = MARGIN * (float((high - low).max()) or 1.0)
-    return low[0] - margin, high[0] + margin, low[1] - margin, high[1] + margin
+    (left, bottom), (right, top) = (low - margin).tolist(), (high + margin).tolist()
+    return left, right, bottom, top
 
 
 # ---- made points -----------------------------------------------------------------------------------
@@ -107,7 +108,8 @@ def ring_points(n: int, radius: float = 1.0, center: tuple[float, float] = (0.0,
     [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]]
     """
     angle = 2 * np.pi * np.arange(n) / max(n, 1)
-    return _round(np.column_stack([np.cos(angle), np.sin(angle)]) * radius) + np.asarray(center, float)
+    ring = _round(np.column_stack([np.cos(angle), np.sin(angle)]) * radius)
+    return np.asarray(ring + np.asarray(center, float))
 
 
 def grid_points(columns: int, rows: int | None = None) -> np.ndarray:
@@ -119,7 +121,7 @@ def grid_points(columns: int, rows: int | None = None) -> np.ndarray:
     [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]]
     """
     y, x = np.mgrid[: columns if rows is None else rows, :columns]
-    return np.column_stack([x.ravel(), y.ravel()]).astype(float)
+    return np.column_stack([x.ravel(), y.ravel()]).astype(np.float64)
 
 
 def _round(points: np.ndarray) -> np.ndarray:

@@ -230,14 +230,12 @@ def do_cross(points, a, b, c, d):
         return False
     abc, abd = turn(points, a, b, c), turn(points, a, b, d)
     cda, cdb = turn(points, c, d, a), turn(points, c, d, b)
-    if abc == 0 and abd == 0:  # on one line: they overlap unless they meet end to end
-        if b == c or a == d or a == c or b == d:
-            shared = a if (a == c or a == d) else b
-            p, q = (b if shared == a else a), (d if shared == c else c)
-            return is_same_side(points, shared, p, q)
+    if b == c:  # they meet end to start, and overlap only if the second turns back
+        return abd == 0 and is_same_side(points, b, a, d)
+    if a == d:
+        return abc == 0 and is_same_side(points, a, b, c)
+    if abc == 0 and abd == 0:  # on one line
         return max(points[a, 0], points[b, 0]) >= min(points[c, 0], points[d, 0])
-    if a == c or a == d or b == c or b == d:
-        return False
     return abc * abd <= 0 and cda * cdb <= 0
 
 

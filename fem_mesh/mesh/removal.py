@@ -83,22 +83,16 @@ def find_ear(k, xy, origin, ring):
 def is_ear(a, b, c, k, xy, origin, ring):
     while is_ghost(a) or is_ghost(b):  # at most two turns: bring a ghost to the end
         a, b, c = b, c, a
-    if not is_ghost(c):
-        if orient_sign(xy[a, 0], xy[a, 1], xy[b, 0], xy[b, 1], xy[c, 0], xy[c, 1]) <= 0.0:
-            return False
+    if not is_ghost(c) and orient_sign(xy[a, 0], xy[a, 1], xy[b, 0], xy[b, 1], xy[c, 0], xy[c, 1]) <= 0.0:
+        return False
     for j in range(k):
         v = origin[ring[j]]
-        if is_ghost(v) or v == a or v == b or v == c:
+        if is_ghost(v) or v in (a, b, c):
             continue
         if is_ghost(c):
             if is_beyond_edge(a, b, xy[v, 0], xy[v, 1], xy):
                 return False
-        elif (
-            in_circle_sign(
-                xy[a, 0], xy[a, 1], xy[b, 0], xy[b, 1], xy[c, 0], xy[c, 1], xy[v, 0], xy[v, 1]
-            )
-            > 0.0
-        ):
+        elif in_circle_sign(xy[a, 0], xy[a, 1], xy[b, 0], xy[b, 1], xy[c, 0], xy[c, 1], xy[v, 0], xy[v, 1]) > 0.0:
             return False
     return True
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from fem_mesh.errors import MeshError
-from fem_mesh.kernel import call, index, kernel
+from fem_mesh.kernel import call, index, kernel, view
 from fem_mesh.mesh.halfedge import (
     GHOST,
     is_ghost,
@@ -52,6 +52,20 @@ class Workspace:
     note: str = ""
 
     @classmethod
+    def _with_room(cls, points: np.ndarray, name: np.ndarray, xy: np.ndarray) -> Workspace:
+        room = max(2 * len(points), 4)  # n vertices and the ghost on a sphere have 2n - 2 triangles
+        return cls(
+            points,
+            name,
+            xy,
+            merged=np.arange(len(xy), dtype=np.uint32),
+            origin=np.empty(3 * room, np.uint32),
+            twin=np.empty(3 * room, np.uint32),
+            cavity=np.empty(room + 2, np.uint32),
+            ring=np.empty(3 * room + 3, np.uint32),
+        )
+
+    @classmethod
     def of_points(cls, points: np.ndarray, order: np.ndarray) -> Workspace:
         """Room to insert ``points`` one by one in ``order``, begun with the first triangle.
 
@@ -64,7 +78,7 @@ class Workspace:
         xy = np.empty((n + 1, 2))
         xy[GHOST] = 0.0
         np.take(points, order, axis=0, out=xy[1:])
-        work = cls(points, name, xy, np.arange(n + 1, dtype=np.uint32), *_connectivity(n))
+        work = cls._with_room(points, name, xy)
         work._begin(n)
         return work
 
@@ -79,7 +93,7 @@ class Workspace:
         for k, v in ((2, b), (3, c)):  # bring the triangle to the front, the rest moves up
             for array in (self.xy, self.name):
                 array[k : v + 1] = np.roll(array[k : v + 1], 1, axis=0)
-        start_triangulation(self.xy, memoryview(self.origin), memoryview(self.twin), 1, 2, 3)
+        start_triangulation(view(self.xy), view(self.origin), view(self.twin), 1, 2, 3)
         self.state[NEXT], self.state[COUNT] = 4, 4
 
     @classmethod
@@ -92,7 +106,7 @@ class Workspace:
         n, m = len(points), len(triangles)
         name = np.arange(-1, n, dtype=np.int32)
         xy = np.concatenate([np.zeros((1, 2)), points])
-        work = cls(points, name, xy, np.arange(n + 1, dtype=np.uint32), *_connectivity(n))
+        work = cls._with_room(points, name, xy)
         work.origin[: 3 * m] = triangles.ravel() + 1
         flat = twins.ravel()
         work.twin[: 3 * m] = flat
@@ -153,23 +167,12 @@ class Workspace:
 
     def apex(self, h: int) -> int:
         """The user's index of the vertex opposite half-edge ``h`` in its triangle; -1 for the ghost."""
-        return self.name.item(self.origin.item(next_edge(next_edge(h))))
+        return int(self.name[self.origin[next_edge(next_edge(h))]])
 
 
 def _first_equal(points: np.ndarray) -> np.ndarray:
     _, first, inverse = np.unique(points, axis=0, return_index=True, return_inverse=True)
     return first[inverse.ravel()].astype(np.int32)
-
-
-def _connectivity(n: int) -> tuple[np.ndarray, ...]:
-    # n vertices and the ghost on a sphere have 2n - 2 triangles
-    room = max(2 * n, 4)
-    return (
-        np.empty(3 * room, np.uint32),
-        np.empty(3 * room, np.uint32),
-        np.empty(room + 2, np.uint32),
-        np.empty(3 * room + 3, np.uint32),
-    )
 
 
 @kernel

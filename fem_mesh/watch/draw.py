@@ -5,7 +5,7 @@ from __future__ import annotations
 import base64
 import io
 import textwrap
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -208,7 +208,7 @@ def _polygons(
     if role.fill:
         page.add_collection(PolyCollection(corners, facecolor=color, alpha=role.fill, edgecolor="none", zorder=1 + order / 20))
     hatched = PolyCollection(corners, facecolor="none", edgecolor=color, linewidth=role.width, zorder=2 + order / 20)
-    hatched.set_hatch(role.hatch or None)
+    hatched.set_hatch(role.hatch)
     page.add_collection(hatched)
     if listed:
         shown.append(name)
@@ -293,8 +293,9 @@ def _legend(page: Axes, shown: list[str], dark: bool) -> None:
         elif role.fill:
             handles.append(Patch(facecolor=(color, role.fill), edgecolor=color, hatch=2 * role.hatch, label=role.word))
         else:
-            dash = (0, role.dash) if role.dash else "solid"
-            handles.append(Line2D([], [], color=color, linewidth=role.width, linestyle=dash, label=role.word))
+            line = Line2D([], [], color=color, linewidth=role.width, label=role.word)
+            line.set_linestyle((0, role.dash) if role.dash else "solid")
+            handles.append(line)
     if handles:
         page.legend(
             handles=handles, loc="upper center", bbox_to_anchor=(0.5, 0.0), ncols=len(handles), frameon=False,
@@ -306,4 +307,3 @@ def _caption(page: Axes, head: str, text: str, dark: bool) -> None:
     width = page.get_position().width * page.figure.get_size_inches()[0]  # type: ignore[union-attr]
     lines = textwrap.wrap(text, int(LETTERS_AN_INCH * width))
     page.set_title("\n".join([head, *lines]), color=INK[dark], fontsize=12.5, loc="left", linespacing=1.35)
-

@@ -12,7 +12,8 @@ from matplotlib.figure import Figure
 from tqdm import tqdm
 
 from fem_mesh.errors import MeshError
-from fem_mesh.watch.draw import DPI, PAPER, Picture, draw_step, new_axes
+from fem_mesh.watch.draw import DPI, Picture, draw_step, new_axes
+from fem_mesh.watch.style import PAPER
 
 if TYPE_CHECKING:
     from fem_mesh.trace import Trace
@@ -49,7 +50,9 @@ def contact_sheet(trace: Trace, steps: Iterable[int] | None = None, **options: A
     dark = bool(options.get("dark", False))
     figure = Figure(figsize=(5.2 * columns, 4.9 * rows), facecolor=PAPER[dark])
     axes = figure.subplots(rows, columns, squeeze=False)
-    figure.subplots_adjust(left=0.015, right=0.985, top=1 - 0.85 / (4.9 * rows), bottom=0.35 / (4.9 * rows), hspace=0.32, wspace=0.06)
+    figure.subplots_adjust(
+        left=0.015, right=0.985, top=1 - 0.85 / (4.9 * rows), bottom=0.35 / (4.9 * rows), hspace=0.32, wspace=0.06
+    )
     for ax in axes.flat:
         ax.set_axis_off()
     for ax, k in zip(axes.flat, tqdm(chosen, desc="drawing", delay=2, leave=False), strict=False):
