@@ -7,3 +7,9 @@ settings.register_profile("exhaustive", deadline=None, max_examples=2000)
 def pytest_configure(config):
     chosen = "exhaustive" if config.option.markexpr == "exhaustive" else "default"
     settings.load_profile(chosen)
+
+
+def pytest_ignore_collect(collection_path, config):
+    """Benchmarks run when they are asked for: ``pytest tests/benchmarks``."""
+    if collection_path.name == "benchmarks" and not any("benchmarks" in str(arg) for arg in config.args):
+        return True

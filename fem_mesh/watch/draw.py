@@ -6,6 +6,7 @@ import base64
 import io
 import textwrap
 from collections.abc import Iterable
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -52,19 +53,23 @@ class Picture:
         return self.figure.axes[0]
 
     def save(self, path: Any) -> None:
-        self.figure.savefig(path, dpi=2 * DPI, facecolor=self.figure.get_facecolor())
+        """Write the figure to ``path``; the ending decides the format, as Matplotlib reads it."""
+        if str(path).endswith(".png"):
+            Path(path).write_bytes(self._png(2 * DPI))
+        else:
+            self.figure.savefig(path, facecolor=self.figure.get_facecolor())
 
     def __repr__(self) -> str:
         return self.alt
 
     def _repr_mimebundle_(self, include: Any = None, exclude: Any = None) -> Any:
-        data = {"text/plain": self.alt, "image/png": base64.b64encode(self._small_png()).decode()}
+        data = {"text/plain": self.alt, "image/png": base64.b64encode(self._png(DPI)).decode()}
         return data, {"image/png": {"alt": self.alt}}
 
-    def _small_png(self) -> bytes:
+    def _png(self, dpi: int) -> bytes:
         """The figure with COLORS colours: a third of the size, and no difference to the eye."""
         full, small = io.BytesIO(), io.BytesIO()
-        self.figure.savefig(full, format="png", dpi=DPI, facecolor=self.figure.get_facecolor())
+        self.figure.savefig(full, format="png", dpi=dpi, facecolor=self.figure.get_facecolor())
         Image.open(full).convert("RGB").quantize(COLORS).save(small, format="png", optimize=True)
         return small.getvalue()
 

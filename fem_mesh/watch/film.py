@@ -45,7 +45,7 @@ def save_trace(trace: Trace, path: Any, *, fps: float = 2.0, steps: Iterable[int
 def contact_sheet(trace: Trace, steps: Iterable[int] | None = None, **options: Any) -> Picture:
     """Some steps of a trace on one sheet, in reading order."""
     chosen = list(steps) if steps is not None else choose_steps(len(trace))
-    columns = min(4, max(1, int(np.ceil(np.sqrt(len(chosen))))))
+    columns = len(chosen) if len(chosen) <= 3 else min(4, int(np.ceil(np.sqrt(len(chosen)))))
     rows = -(-len(chosen) // columns)
     dark = bool(options.get("dark", False))
     figure = Figure(figsize=(5.2 * columns, 4.9 * rows), facecolor=PAPER[dark])
