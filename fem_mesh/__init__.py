@@ -20,7 +20,7 @@ from fem_mesh.algorithms.sweep import any_triangulation
 from fem_mesh.errors import MeshError
 from fem_mesh.mesh.mesh import Mesh
 from fem_mesh.mesh.points import grid_points, random_points, ring_points
-from fem_mesh.mesh.quality import validate
+from fem_mesh.mesh.validators import validate
 from fem_mesh.predicates import in_circle, in_diametral_circle, orient
 from fem_mesh.steps import Step
 from fem_mesh.trace import Trace, record

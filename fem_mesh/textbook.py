@@ -30,7 +30,7 @@ def in_circle(a: Point, b: Point, c: Point, d: Point, tolerance: float = 1e-12) 
         + (bx * bx + by * by) * (cx * ay - ax * cy)
         + (cx * cx + cy * cy) * (ax * by - bx * ay)
     )
-    return det > tolerance
+    return bool(det > tolerance)
 
 
 def sides(triangle: Triangle) -> list[tuple[int, int]]:

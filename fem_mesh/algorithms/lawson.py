@@ -24,7 +24,7 @@ import numpy as np
 
 from fem_mesh.errors import MeshError
 from fem_mesh.kernel import SETTLED, call, index, kernel, watch
-from fem_mesh.mesh import quality
+from fem_mesh.mesh import quality, validators
 from fem_mesh.mesh.halfedge import flip, in_conflict, is_ghost, next_edge, prev_edge
 from fem_mesh.mesh.mesh import Mesh
 from fem_mesh.mesh.points import as_points
@@ -99,13 +99,12 @@ def begin_from(points: Any, triangles: Any) -> Workspace:
     points, triangles = as_points(points), quality.as_triangles(triangles)
     if not len(triangles):
         raise MeshError("there is no triangle to start from: any_triangulation(points) makes some")
-    quality.check_elements(points, triangles)
-    clockwise = quality.areas(points, triangles) < 0  # rounded: check_realization decides exactly
-    triangles[clockwise] = triangles[clockwise][:, [0, 2, 1]]
-    twins = quality.check_edges(points, triangles)
-    quality.check_topology(points, triangles)
-    quality.check_realization(points, triangles)
-    loops = quality.count_loops(*quality.boundary_edges(points, triangles))
+    validators.check_elements(points, triangles)
+    triangles = quality.counter_clockwise(points, triangles)
+    twins = validators.check_edges(points, triangles)
+    validators.check_topology(points, triangles)
+    validators.check_realization(points, triangles)
+    loops = len(validators.trace_loops(*validators.boundary_edges(points, triangles)))
     if loops != 1:
         raise MeshError(f"the triangles have {loops} boundaries instead of 1: there is a hole, or more than one piece")
     work = Workspace.of_triangles(points, triangles, twins)

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from fem_mesh.errors import MeshError
-from fem_mesh.mesh import quality
+from fem_mesh.mesh import quality, validators
 from fem_mesh.mesh.locator import Locator
 from fem_mesh.mesh.points import as_points
 
@@ -19,10 +19,11 @@ class Mesh:
     """A triangle mesh. Its arrays are read-only; the points keep the user's numbering.
 
     points : float64 (n, 2)
-    triangles : int32 (m, 3), counter-clockwise
+    triangles : int32 (m, 3), counter-clockwise (clockwise ones that you give are turned round)
     neighbors : int32 (m, 3), the triangle opposite corner i, -1 at the boundary
     segments : int32 (k, 2), edges that were asked for
-    merged_into : int32 (n,), each point's representative: itself, or the equal point with the lowest index
+    merged_into : int32 (n,), each point's representative: itself, or the equal point with the lowest
+        index (if you gave an order of insertion: the one inserted first)
     regions : int32 (m,), the material of each triangle
     note : why the mesh is empty or incomplete, else ""
     work : what it took: "in_circle tests", "walk steps", "flips"
@@ -56,8 +57,9 @@ class Mesh:
     ) -> None:
         if neighbors is None:  # not from an algorithm of ours: look at it first
             points, triangles = as_points(points), quality.as_triangles(triangles)
-            quality.check_elements(points, triangles)
-            twins = quality.check_edges(points, triangles)
+            validators.check_elements(points, triangles)
+            triangles = quality.counter_clockwise(points, triangles)
+            twins = validators.check_edges(points, triangles)
             neighbors = np.where(twins < 0, -1, twins // 3)[:, [1, 2, 0]].astype(np.int32)
         arrays = {
             "points": points,
@@ -75,6 +77,9 @@ class Mesh:
 
     def __setattr__(self, name: str, value: Any) -> None:
         raise AttributeError(f"a Mesh does not change: make a new one instead of setting {name!r}")
+
+    def __delattr__(self, name: str) -> None:
+        raise AttributeError(f"a Mesh does not change: {name!r} cannot be deleted")
 
     # ---- facts -----------------------------------------------------------------------------------
 
@@ -99,16 +104,16 @@ class Mesh:
         return float(self.angles().min()) if len(self.triangles) else float("nan")
 
     def is_delaunay(self) -> bool:
-        """Whether every circle is empty of points and the convex hull is covered: exact."""
+        """Whether this is a valid mesh whose every circle is empty and which covers the convex hull: exact."""
         try:
-            quality.check_delaunay(self.points.copy(), self.triangles.copy())
+            self.validate(delaunay=True)
         except MeshError:
             return False
         return True
 
     def validate(self, delaunay: bool = False) -> Mesh:
-        """Climb the ladder of validators (see ``fem_mesh.mesh.quality``): raises MeshError, or returns the mesh."""
-        quality.validate(self.points, self.triangles, delaunay=delaunay)
+        """Climb the ladder of validators (see ``fem_mesh.mesh.validators``): raises MeshError, or returns the mesh."""
+        validators.validate(self.points, self.triangles, delaunay=delaunay)
         return self
 
     # ---- questions -------------------------------------------------------------------------------
@@ -147,12 +152,8 @@ class Mesh:
         inside = t >= 0
         result = np.full(x.shape, np.nan)
         corners = self.triangles[t[inside]]
-        a, b, c = (self.points[corners[:, i]] for i in range(3))
-        p = np.column_stack([x[inside], y[inside]])
-        twice = _cross(b - a, c - a)
-        u, v = _cross(p - a, c - a) / twice, _cross(b - a, p - a) / twice
-        at = values[corners]
-        result[inside] = at[:, 0] + u * (at[:, 1] - at[:, 0]) + v * (at[:, 2] - at[:, 0])
+        weights = quality.barycentric(self.points[corners], np.column_stack([x[inside], y[inside]]))
+        result[inside] = (weights * values[corners]).sum(axis=1)
         return float(result) if result.ndim == 0 else result
 
     # ---- showing ---------------------------------------------------------------------------------
@@ -176,7 +177,3 @@ class Mesh:
         from fem_mesh.watch.draw import picture_of_mesh
 
         return picture_of_mesh(self)._repr_mimebundle_()
-
-
-def _cross(u: np.ndarray, v: np.ndarray) -> np.ndarray:
-    return np.asarray(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0])

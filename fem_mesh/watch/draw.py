@@ -144,10 +144,14 @@ def plot_mesh(
     *,
     circles: bool = False,
     numbers: bool | None = None,
+    legend: bool = True,
     dark: bool = False,
     title: str | None = None,
 ) -> Picture | Axes:
-    """Draw a mesh. ``circles`` adds every circumcircle, ``numbers`` the vertices' numbers; see ``draw_step``."""
+    """Draw a mesh. ``circles`` adds every circumcircle, ``numbers`` the vertices' numbers; see ``draw_step``.
+
+    ``title`` replaces the line of facts above the picture.
+    """
     page = new_axes(dark) if ax is None else ax
     page.clear()
     _set_view(page, view_box(mesh.points), dark)
@@ -156,7 +160,7 @@ def plot_mesh(
     if numbers or (numbers is None and len(mesh.points) <= MOST_NUMBERS):
         _numbers(page, mesh.points, dark)
     _edges(page, mesh.points, mesh.segments.tolist(), dark, shown, role="segment")
-    if circles:
+    if circles and legend:
         _legend(page, shown, dark)
     facts = repr(mesh) if title is None else title
     _caption(page, facts, "", dark)
