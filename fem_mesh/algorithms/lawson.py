@@ -128,7 +128,7 @@ def lawson(points: Any, triangles: Any) -> Generator[Step, None, Mesh]:
     ...     print(step.kind, "-", step.caption)
     start - 2 triangles on 4 points: 5 edges to test
     test - edge 0-2 must go: vertex 1 lies inside the circle of 0, 2, 3 (0.678 from its centre, radius 3.84)
-    flip - edge 0-2 is flipped to 1-3
+    flip - edge 0-2 is flipped to 1-3: vertex 1 lay inside the circle of 0, 2, 3
     done - 1 flip after 1 test: every circle is empty
     """
     return _watch(begin_from(points, triangles))
@@ -140,13 +140,24 @@ def _watch(work: Workspace) -> Generator[Step, None, Mesh]:
     edges = len({frozenset(e) for a, b, c in start for e in ((a, b), (b, c), (c, a))})
     yield Step("start", say_start, added=start, new_points=[(v, *work.points[v].tolist()) for v in used], edge_count=edges)
     before: tuple[Triangle, ...] = ()
-    edge = (-1, -1)
+    edge, left, right = (-1, -1), -1, -1
     flips = tests = 0
     for event, h in watch(flip_edges, flip_state(work)):
         if event == FLIP:
             flips += 1
             after = _sides(work, h)
-            yield Step("flip", say_flip, added=after, removed=before, edges=(work.edge(h),), old=edge, new=work.edge(h))
+            new = work.edge(h)
+            yield Step(
+                "flip",
+                say_flip,
+                added=after,
+                removed=before,
+                edges=(new,),
+                old=edge,
+                new=new,
+                left=left,
+                right=right,
+            )
             continue
         edge, left, right = work.edge(h), work.apex(h), work.apex(work.twin.item(h))
         before = _sides(work, h)
@@ -211,7 +222,8 @@ def say_flip(step: Step) -> str:
     (a, b), (c, d) = sorted(step.facts["old"]), sorted(step.facts["new"])
     if a == -1:
         return f"edge {c}-{d} closes the notch at vertex {b}"
-    return f"edge {a}-{b} is flipped to {c}-{d}"
+    left, right = step.facts["left"], step.facts["right"]
+    return f"edge {a}-{b} is flipped to {c}-{d}: vertex {right} lay inside the circle of {a}, {b}, {left}"
 
 
 def say_done(step: Step) -> str:
