@@ -245,6 +245,13 @@ def triangle_2e_6_by_53():
 
 
 @point_set
+def triangle_of_negative_computed_area():
+    """Counter-clockwise as given; but the computed area is -7e-18."""
+    x = np.array([float.fromhex(h) for h in ("0x1.003708ea1cc70p-5", "0x1.00046cb1ab034p-1", "0x1.002b633c36d7ep-2")])
+    return np.column_stack([x, nudged(x, np.full(3, -2))])
+
+
+@point_set
 def corner_stored_twice():
     """Two squares that share a corner, which has two numbers."""
     return [(0, 0), (1, 0), (1, 1), (0, 1), (1, 1), (2, 1), (2, 2), (1, 2)]

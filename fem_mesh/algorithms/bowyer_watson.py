@@ -94,7 +94,7 @@ def _order(points: np.ndarray, order: str | Iterable[int]) -> np.ndarray:
         if order == "brio":
             return insertion_order(points)
         raise MeshError(f'order must be "given", "brio" or a permutation, not {order!r}')
-    permutation = np.array(list(order))
+    permutation = np.array(list(order)) if isinstance(order, Iterable) else np.empty(0)
     if not np.array_equal(np.sort(permutation), np.arange(len(points))):
         raise MeshError(f"order must name each of the {len(points)} points exactly once")
     return permutation.astype(np.int64)

@@ -119,8 +119,8 @@ def lawson(points: Any, triangles: Any) -> Generator[Step, None, Mesh]:
     """Delaunay triangulation by flips, from any triangulation: yields every test and flip; returns the Mesh.
 
     points : (n, 2) numbers
-    triangles : (m, 3) point numbers, any valid triangulation that uses all points. If it does not cover
-        the convex hull, the notches are filled.
+    triangles : (m, 3) point numbers, any valid triangulation that uses all points; clockwise triangles
+        are turned round. If it does not cover the convex hull, the notches are filled.
 
     Raises MeshError where the triangles are no triangulation, naming the first offender. Source: Lawson 1977.
 

@@ -71,7 +71,7 @@ class Mesh:
         }
         for name, array in arrays.items():
             array.flags.writeable = False
-            object.__setattr__(self, name, array)
+            object.__setattr__(self, name, array.view())  # a view of it cannot be made writeable again
         object.__setattr__(self, "note", note)
         object.__setattr__(self, "work", MappingProxyType(dict(work or {})))
 
@@ -132,7 +132,7 @@ class Mesh:
         >>> fm.delaunay([(0, 0), (2, 0), (0, 2)]).find([0.5, 2.0], [0.5, 2.0]).tolist()
         [0, -1]
         """
-        x, y = np.broadcast_arrays(np.asarray(x, float), np.asarray(y, float))
+        x, y = _broadcast(x, y)
         queries = as_points(np.column_stack([x.ravel(), y.ravel()]))
         found = self._locator.find(queries).reshape(x.shape)
         return int(found) if found.ndim == 0 else found
@@ -144,10 +144,10 @@ class Mesh:
         >>> fm.delaunay([(0, 0), (2, 0), (0, 2)]).interpolate([0, 2, 4], 0.5, 1.0)
         2.5
         """
-        values = np.asarray(values, float)
+        values = _numbers(values, "values")
         if values.shape != (len(self.points),):
             raise MeshError(f"values must have one number a point, shape ({len(self.points)},), not {values.shape}")
-        x, y = np.broadcast_arrays(np.asarray(x, float), np.asarray(y, float))
+        x, y = _broadcast(x, y)
         t = np.asarray(self.find(x, y))
         inside = t >= 0
         result = np.full(x.shape, np.nan)
@@ -177,3 +177,22 @@ class Mesh:
         from fem_mesh.watch.draw import picture_of_mesh
 
         return picture_of_mesh(self)._repr_mimebundle_()
+
+
+def _numbers(values: Any, name: str) -> np.ndarray:
+    try:
+        array = np.asarray(values)
+        if array.dtype.kind in "fiub":
+            return array.astype(np.float64)
+    except ValueError:
+        pass
+    raise MeshError(f"{name} must be real numbers, not {values!r}")
+
+
+def _broadcast(x: Any, y: Any) -> tuple[np.ndarray, np.ndarray]:
+    x, y = _numbers(x, "x"), _numbers(y, "y")
+    try:
+        x, y = np.broadcast_arrays(x, y)
+    except ValueError:
+        raise MeshError(f"x and y must have one shape, not {x.shape} and {y.shape}") from None
+    return x, y

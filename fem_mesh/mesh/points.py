@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numbers
 from typing import Any
 
 import numpy as np
@@ -24,35 +25,48 @@ def as_points(points: Any) -> np.ndarray:
     array([[0., 0.],
            [1., 0.]])
     """
-    if not hasattr(points, "__array__") and not hasattr(points, "__len__"):
-        points = list(points) if hasattr(points, "__iter__") else points
-    try:
-        given = np.asarray(points)
-    except ValueError:
-        given = np.empty(0, object)
-    if given.size == 0 and given.ndim == 1 and not (hasattr(points, "__len__") and len(points)):
-        return np.empty((0, 2))
-    if given.ndim != 2 or given.shape[1] != 2:
-        raise MeshError(_shape_complaint(points, given))
-    if np.iscomplexobj(given) or given.dtype.kind not in "fiubO":
-        raise MeshError(f"points must be real numbers, not {given.dtype}")
+    points = points if hasattr(points, "__len__") or not hasattr(points, "__iter__") else list(points)
+    given = _read(points)
     try:
         result = np.array(given, dtype=np.float64, order="C")
-    except (TypeError, ValueError, OverflowError):
-        row = next(i for i, pair in enumerate(given) if not _are_numbers(pair))
-        raise MeshError(f"point {row} is {tuple(given[row].tolist())!r}, not a pair of numbers") from None
-    if given.dtype.kind in "iu":
-        too_large = (given > LARGEST_INTEGER) | (given < -LARGEST_INTEGER)
-        _refuse(too_large, given, "has an integer above 2^53, which no double holds: shift or scale the points")
-    elif given.dtype != np.float64:
+    except OverflowError:  # a Python integer beyond all doubles
+        _refuse_large_integers(points, given)
+        raise
+    if given.dtype != np.float64:
         _refuse((given != result) & np.isfinite(result), given, "is no pair of doubles: round it, or scale the points")
     magnitude = np.abs(result)
     if not ((magnitude <= LARGEST) & ((magnitude >= SMALLEST) | (magnitude == 0))).all():
         _refuse(~np.isfinite(result), result, "is not finite: drop it, or repair what made it")
         outside = (magnitude > LARGEST) | ((magnitude < SMALLEST) & (magnitude != 0))
         _refuse(outside, result, "has a magnitude outside 2^-142 .. 2^201, where signs are not exact: scale the points")
+    if (magnitude >= LARGEST_INTEGER).any():
+        _refuse_large_integers(points, given)
     result += 0.0  # -0.0 is 0.0
     return result
+
+
+def _read(points: Any) -> np.ndarray:
+    """``points`` as an array (n, 2) of real numbers, of whatever type they are."""
+    if np.ma.isMaskedArray(points):
+        _refuse(np.ma.getmaskarray(points), np.asarray(points), "is masked: drop it first")
+    try:
+        given = np.asarray(points)
+    except ValueError:  # rows of different lengths
+        given = np.empty(0, object)
+    if given.shape == (0,) and len(points) == 0:
+        return np.empty((0, 2))
+    if given.ndim != 2 or given.shape[1] != 2:
+        raise MeshError(_shape_complaint(points, given))
+    if given.dtype.kind not in "fiub":
+        for row, (x, y) in enumerate(points):
+            if not (isinstance(x, numbers.Real) and isinstance(y, numbers.Real)):
+                raise MeshError(f"point {row} is ({x!r}, {y!r}), not a pair of real numbers")
+    return given
+
+
+def _refuse_large_integers(points: Any, given: np.ndarray) -> None:
+    large = [[isinstance(v, numbers.Integral) and abs(int(v)) > LARGEST_INTEGER for v in pair] for pair in points]
+    _refuse(np.array(large), given, "has an integer above 2^53, which need not be a double: scale the points")
 
 
 def _shape_complaint(points: Any, given: np.ndarray) -> str:
@@ -62,13 +76,6 @@ def _shape_complaint(points: Any, given: np.ndarray) -> str:
         if not hasattr(point, "__len__") or len(point) != 2:
             return f"point {row} is {point!r}, not a pair (x, y)"
     return f"points must have the shape (n, 2), not {given.shape}: one row (x, y) a point"
-
-
-def _are_numbers(pair: Any) -> bool:
-    try:
-        return len([float(value) for value in pair]) == 2
-    except (TypeError, ValueError, OverflowError):
-        return False
 
 
 def _refuse(wrong: np.ndarray, points: np.ndarray, complaint: str) -> None:

@@ -17,7 +17,10 @@ THIN = 1e-6  # area to the square of the size: flatter triangles are measured in
 
 def as_triangles(triangles: Any) -> np.ndarray:
     """``triangles`` as a new int32 array (m, 3). Raises MeshError where they are no triples of integers."""
-    given = np.asarray(list(triangles) if not hasattr(triangles, "__len__") else triangles)
+    try:
+        given = np.asarray(triangles if hasattr(triangles, "__len__") else list(triangles))
+    except (TypeError, ValueError):
+        raise MeshError(f"triangles must be rows of three point numbers, not {triangles!r:.80}") from None
     if given.size == 0:
         return np.empty((0, 3), np.int32)
     if given.ndim != 2 or given.shape[1] != 3:
