@@ -117,36 +117,40 @@ def worth_compiling(function: Callable[..., Any], arguments: tuple[Any, ...], si
 
 def compile_driver(generator: Callable[..., Iterator[tuple[int, int]]], state: Sequence[np.ndarray]) -> Any:
     """The compiled driver of a generator kernel, compiled for these arrays if it was not yet."""
-    fingerprint = _fingerprint(generator)
 
-    def drain(arrays: Any, budget: int) -> tuple[bool, int, int]:
-        fingerprint  # noqa: B018  (a closure's cells are part of Numba's cache key)
-        event, where = 0, 0
-        for event, where in generator(*arrays):
-            budget -= 1
-            if budget <= 0 and event >= SETTLED:
-                return False, event, where
-        return True, event, where
+    def make(fingerprint: str) -> Callable[..., Any]:
+        def drain(arrays: Any, budget: int) -> tuple[bool, int, int]:
+            fingerprint  # noqa: B018  (what a function closes over is part of Numba's cache key)
+            event, where = 0, 0
+            for event, where in generator(*arrays):
+                budget -= 1
+                if budget <= 0 and event >= SETTLED:
+                    return False, event, where
+            return True, event, where
 
-    return _compile(generator, drain, (tuple(state), EVENTS_A_CALL))
+        return drain
+
+    return _compile(generator, make, (tuple(state), EVENTS_A_CALL))
 
 
 def compile_call(function: Callable[..., Any], arguments: tuple[Any, ...]) -> Any:
     """A compiled ``call(arguments)`` of a kernel, compiled for these arguments if it was not yet."""
-    fingerprint = _fingerprint(function)
 
-    def call(arguments: Any) -> Any:
-        fingerprint  # noqa: B018
-        return function(*arguments)
+    def make(fingerprint: str) -> Callable[..., Any]:
+        def call(arguments: Any) -> Any:
+            fingerprint  # noqa: B018
+            return function(*arguments)
 
-    return _compile(function, call, (arguments,))
+        return call
+
+    return _compile(function, make, (arguments,))
 
 
-def _compile(function: Callable[..., Any], driver: Callable[..., Any], arguments: tuple[Any, ...]) -> Any:
+def _compile(function: Callable[..., Any], make: Callable[[str], Callable[..., Any]], arguments: tuple[Any, ...]) -> Any:
     numba = _numba()
     with _lock:
         if function not in _compiled:
-            options = {"error_model": "numpy", "nogil": True}
+            driver, options = make(_fingerprint(function)), {"error_model": "numpy", "nogil": True}
             try:
                 _compiled[function] = numba.njit(driver, cache=True, **options)
             except RuntimeError:  # nowhere to write a cache: graders, hubs

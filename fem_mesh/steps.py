@@ -35,6 +35,7 @@ class Step:
         "new_points", "point", "points", "removed", "triangles", "visited",
     )  # fmt: skip
 
+    _caption: str | Callable[[Step], str]
     kind: str
     added: tuple[Triangle, ...]
     removed: tuple[Triangle, ...]
@@ -83,7 +84,7 @@ class Step:
     @property
     def caption(self) -> str:
         """One plain sentence: what happens, and the numbers that decided it."""
-        return self._caption if isinstance(self._caption, str) else self._caption(self)  # type: ignore[attr-defined, no-any-return]
+        return self._caption if isinstance(self._caption, str) else self._caption(self)
 
     def __setattr__(self, name: str, value: Any) -> None:
         raise AttributeError(f"a Step does not change: {name!r} cannot be set")

@@ -167,7 +167,7 @@ class Trace(Sequence[Step]):
         now = before if step.triangles is None else {_turned(t): tuple(map(int, t)) for t in step.triangles}
         return Step(
             step.kind,
-            step._caption,  # type: ignore[attr-defined]
+            step._caption,
             added=[t for key, t in now.items() if key not in before],
             removed=[t for key, t in before.items() if key not in now],
             new_points=new,
