@@ -26,7 +26,7 @@ from fem_mesh.steps import Step
 from fem_mesh.trace import Trace, record
 
 if TYPE_CHECKING:
-    from fem_mesh.watch.draw import Picture
+    from fem_mesh.watch.picture import Picture
 
 __version__ = "0.1.0"
 
@@ -54,7 +54,7 @@ __all__ = [
 
 def __getattr__(name: str) -> Any:
     if name == "Picture":  # Matplotlib is imported when it is first needed
-        from fem_mesh.watch.draw import Picture
+        from fem_mesh.watch.picture import Picture
 
         return Picture
     raise AttributeError(f"module 'fem_mesh' has no attribute {name!r}")

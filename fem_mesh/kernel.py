@@ -15,6 +15,8 @@ from __future__ import annotations
 import collections
 import hashlib
 import inspect
+import pickle
+import re
 import sys
 import threading
 from collections.abc import Callable, Iterator, Sequence
@@ -82,8 +84,8 @@ def run(
 ) -> tuple[int, int]:
     """Drain a generator kernel: compiled if that is at hand or worth its wait, else in plain Python.
 
-    ``size`` is the size of the input, ``done()`` says how much of ``total`` is done (a progress bar
-    appears after two seconds). Returns the last event, ``(0, 0)`` if there was none.
+    ``size`` is the size of the input, ``done()`` says how much is done, of ``total`` if that is known (a
+    progress bar appears after two seconds). Returns the last event, ``(0, 0)`` if there was none.
     """
     arguments = (tuple(state), EVENTS_A_CALL)
     if not worth_compiling(generator, arguments, size):
@@ -95,7 +97,7 @@ def run(
         while True:
             finished, event, where = drain(*arguments)
             last = (event, where) if event else last
-            if bar is not None and done is not None:
+            if done is not None:
                 bar.update(done() - bar.n)
             if finished:
                 return last
@@ -118,54 +120,53 @@ def worth_compiling(function: Callable[..., Any], arguments: tuple[Any, ...], si
 def compile_driver(generator: Callable[..., Iterator[tuple[int, int]]], state: Sequence[np.ndarray]) -> Any:
     """The compiled driver of a generator kernel, compiled for these arrays if it was not yet."""
 
-    def make(fingerprint: str) -> Callable[..., Any]:
-        def drain(arrays: Any, budget: int) -> tuple[bool, int, int]:
-            fingerprint  # noqa: B018  (what a function closes over is part of Numba's cache key)
-            event, where = 0, 0
-            for event, where in generator(*arrays):
-                budget -= 1
-                if budget <= 0 and event >= SETTLED:
-                    return False, event, where
-            return True, event, where
+    def drain(arrays: Any, budget: int) -> tuple[bool, int, int]:
+        event, where = 0, 0
+        for event, where in generator(*arrays):
+            budget -= 1
+            if budget <= 0 and event >= SETTLED:
+                return False, event, where
+        return True, event, where
 
-        return drain
-
-    return _compile(generator, make, (tuple(state), EVENTS_A_CALL))
+    return _compile(generator, drain, (tuple(state), EVENTS_A_CALL))
 
 
 def compile_call(function: Callable[..., Any], arguments: tuple[Any, ...]) -> Any:
     """A compiled ``call(arguments)`` of a kernel, compiled for these arguments if it was not yet."""
 
-    def make(fingerprint: str) -> Callable[..., Any]:
-        def call(arguments: Any) -> Any:
-            fingerprint  # noqa: B018
-            return function(*arguments)
+    def call(arguments: Any) -> Any:
+        return function(*arguments)
 
-        return call
-
-    return _compile(function, make, (arguments,))
+    return _compile(function, call, (arguments,))
 
 
-def _compile(function: Callable[..., Any], make: Callable[[str], Callable[..., Any]], arguments: tuple[Any, ...]) -> Any:
-    numba = _numba()
+def _compile(function: Callable[..., Any], driver: Callable[..., Any], arguments: tuple[Any, ...]) -> Any:
     with _lock:
         if function not in _compiled:
-            driver, options = make(_fingerprint(function)), {"error_model": "numpy", "nogil": True}
-            try:
-                _compiled[function] = numba.njit(driver, cache=True, **options)
-            except RuntimeError:  # nowhere to write a cache: graders, hubs
-                _compiled[function] = numba.njit(driver, **options)
-        dispatcher = _compiled[function]
+            # Numba keeps a cache file a name: one for each kernel, and each state of the kernels' sources.
+            name = f"{function.__module__}_{function.__qualname__}_{_fingerprint(function)[:12]}"
+            driver.__qualname__ = re.sub(r"\W", "_", name)
+            _compiled[function] = _jit(driver, cache=True)
         types = _types(arguments)
-        if types not in dispatcher.overloads:
+        if types not in _compiled[function].overloads:
             notice = threading.Timer(PATIENCE, _say_compiling, [function.__name__])
             notice.daemon = True
             notice.start()
             try:
-                dispatcher.compile(types)
+                _compiled[function].compile(types)
+            except (OSError, EOFError, pickle.UnpicklingError):  # a full disk, a broken cache: do without
+                _compiled[function] = _jit(driver, cache=False)
+                _compiled[function].compile(types)
             finally:
                 notice.cancel()
-        return dispatcher
+        return _compiled[function]
+
+
+def _jit(driver: Callable[..., Any], cache: bool) -> Any:
+    try:
+        return _numba().njit(driver, cache=cache, error_model="numpy", nogil=True)
+    except RuntimeError:  # nowhere to write a cache: graders, hubs
+        return _numba().njit(driver, error_model="numpy", nogil=True)
 
 
 def _types(arguments: tuple[Any, ...]) -> tuple[Any, ...]:
@@ -194,7 +195,7 @@ _numba_module: Any = False
 
 
 def _numba() -> Any:
-    """Numba with every kernel registered, or None where it cannot be imported."""
+    """Numba with every kernel registered, or None where it cannot be imported or is switched off."""
     global _numba_module
     with _lock:
         if _numba_module is False:
@@ -213,7 +214,7 @@ def _numba() -> Any:
             def _scratch(n):  # type: ignore[no-untyped-def]
                 return lambda n: np.empty(n)
 
-            _numba_module = numba
+            _numba_module = None if numba.config.DISABLE_JIT else numba  # type: ignore[attr-defined]
         if _numba_module is not None:
             from numba.extending import register_jitable
 
@@ -226,10 +227,6 @@ def _numba() -> Any:
 
 
 def _progress(total: int | None, name: str) -> Any:
-    from contextlib import nullcontext
-
-    if total is None:
-        return nullcontext()
     from tqdm import tqdm
 
     return tqdm(total=total, desc=name, delay=2, leave=False, unit_scale=True)

@@ -89,6 +89,13 @@ class Step:
     def __setattr__(self, name: str, value: Any) -> None:
         raise AttributeError(f"a Step does not change: {name!r} cannot be set")
 
+    def __getstate__(self) -> dict[str, Any]:
+        return {name: getattr(self, name) for name in self.__slots__}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        for name, value in state.items():
+            object.__setattr__(self, name, value)
+
     def __repr__(self) -> str:
         return f"Step {self.kind}: {self.caption}" if self.caption else f"Step {self.kind}"
 

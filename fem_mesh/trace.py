@@ -8,6 +8,7 @@ near as any other, and a trace takes the memory of its changes.
 from __future__ import annotations
 
 import heapq
+import operator
 from array import array
 from collections import Counter
 from collections.abc import Generator, Iterable, Iterator, Sequence
@@ -88,6 +89,9 @@ class Trace(Sequence[Step]):
 
     def min_angles(self) -> np.ndarray:
         """The smallest angle after each step, in degrees: float64 (len(trace),), nan while there is no triangle."""
+        if self._points.size < len(self._points.table()):  # points move: each frame has its own angles
+            frames = (angles(*self.frame(k)) for k in range(len(self)))
+            return np.array([frame.min() if len(frame) else np.nan for frame in frames])
         table, born, died = self._triangles.table(), *self._triangles.lifetimes()
         coordinates = self._points.final(self._points.size)
         smallest = angles(coordinates, table).min(axis=1) if len(table) else np.empty(0)
@@ -126,7 +130,7 @@ class Trace(Sequence[Step]):
         facts = [many(len(self), "step") + (f" ({kinds})" if kinds else "")]
         if self._steps:
             points, triangles = self.frame(-1)
-            facts += [f"{len(points)} points", many(len(triangles), "triangle")]
+            facts += [f"{int((~np.isnan(points[:, 0])).sum())} points", many(len(triangles), "triangle")]
         return "Trace: " + ", ".join(facts) + ("" if self.complete else ", stopped at the limit")
 
     def _repr_mimebundle_(self, include: Any = None, exclude: Any = None) -> Any:
@@ -150,6 +154,8 @@ class Trace(Sequence[Step]):
             if not self._triangles.end(_turned(triangle), k):
                 raise MeshError(f"step {k} ({step.kind}) removes triangle {triangle}, which is not there")
         for triangle in step.added:
+            if _turned(triangle) in self._triangles.alive:
+                raise MeshError(f"step {k} ({step.kind}) adds triangle {triangle}, which is there already")
             self._triangles.begin(_turned(triangle), triangle, k)
         self._steps.append(step)
 
@@ -164,7 +170,7 @@ class Trace(Sequence[Step]):
         else:
             new = []
         before = self._triangles.current()
-        now = before if step.triangles is None else {_turned(t): tuple(map(int, t)) for t in step.triangles}
+        now = before if step.triangles is None else {_turned(t): t for t in self._read_triangles(step)}
         return Step(
             step.kind,
             step._caption,
@@ -178,6 +184,21 @@ class Trace(Sequence[Step]):
             circles=step.circles,
             **step.facts,
         )
+
+    def _read_triangles(self, step: Step) -> list[Triangle]:
+        k, n = len(self._steps), len(step.points) if step.points is not None else self._points.size
+        result = []
+        for t in step.triangles:
+            try:
+                a, b, c = map(operator.index, t)
+            except TypeError:
+                raise MeshError(f"step {k} ({step.kind}): triangle {t!r} is no triple of point numbers") from None
+            except ValueError:
+                raise MeshError(f"step {k} ({step.kind}): triangle {t!r} has not three corners") from None
+            if not 0 <= min(a, b, c) <= max(a, b, c) < n:
+                raise MeshError(f"step {k} ({step.kind}): triangle {t!r} names a point that is not there: there are {n}")
+            result.append((a, b, c))
+        return result
 
 
 def record(
@@ -225,7 +246,15 @@ def _last_frame(trace: Trace) -> Mesh | None:
     if not len(trace):
         return None
     points, triangles = trace.frame(-1)
-    return Mesh(points, triangles, np.full((len(triangles), 3), -1, np.int32), note="a last frame, not validated")
+    there = np.flatnonzero(~np.isnan(points[:, 0]))
+    points = points[: there[-1] + 1 if len(there) else 0]
+    note = "a last frame, not validated"
+    try:
+        return Mesh(points, triangles, note=note)
+    except MeshError:  # broken, or with gaps among its points: to look at, all the same
+        n, none = len(points), np.full((len(triangles), 3), -1, np.int32)
+        segments, same, regions = np.empty((0, 2), np.int32), np.arange(n, dtype=np.int32), none[:, 0].copy()
+        return Mesh._of(points, triangles, none, segments, same, regions, note, {})
 
 
 def _turned(triangle: Any) -> Triangle:

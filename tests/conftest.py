@@ -11,5 +11,5 @@ def pytest_configure(config):
 
 def pytest_ignore_collect(collection_path, config):
     """Benchmarks run when they are asked for: ``pytest tests/benchmarks``."""
-    if collection_path.name == "benchmarks" and not any("benchmarks" in str(arg) for arg in config.args):
+    if collection_path.name == "benchmarks" and not any("benchmarks" in str(arg) for arg in config.invocation_params.args):
         return True

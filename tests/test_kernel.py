@@ -179,6 +179,27 @@ def test_where_no_cache_can_be_written_the_work_is_done_uncached(tmp_path):
     assert int(run(code, tmp_path)) > 7900
 
 
+def test_with_numba_switched_off_everything_still_runs(tmp_path):
+    assert run(TRIANGULATE, tmp_path, NUMBA_DISABLE_JIT="1") == run(TRIANGULATE, tmp_path)
+
+
+def test_where_the_disk_is_full_the_work_is_done_uncached(tmp_path):
+    code = """
+        import numpy as np, resource
+        import fem_mesh as fm
+        resource.setrlimit(resource.RLIMIT_FSIZE, (8192, 8192))
+        print(len(fm.delaunay(np.random.default_rng(3).random((4000, 2))).triangles))
+    """
+    assert int(run(code, tmp_path, NUMBA_CACHE_DIR=str(tmp_path / "cache"))) > 7900
+
+
+def test_each_kernel_has_a_cache_file_of_its_own(tmp_path):
+    run(TRIANGULATE, tmp_path, NUMBA_CACHE_DIR=str(tmp_path / "cache"))
+    names = {path.name.split("-")[0] for path in (tmp_path / "cache").rglob("*.nbi")}
+    assert len(names) >= 4
+    assert any("insert_points" in name for name in names)
+
+
 def test_a_kernel_typed_into_a_script_compiles(tmp_path):
     code = """
         import numpy as np

@@ -1,5 +1,7 @@
 """A trace goes forward and back, at random, and never holds more than the changes."""
 
+import copy
+import pickle
 import tracemalloc
 
 import numpy as np
@@ -142,6 +144,45 @@ def test_a_lecturers_points_may_vanish_and_move():
     assert np.isnan(trace.frame(1)[0][3]).all()
     np.testing.assert_array_equal(trace.frame(1)[0][1], (1, 0.5))
     np.testing.assert_array_equal(trace.frame(0)[0][1], (1, 0))
+
+
+def test_moving_points_are_measured_where_they_are():
+    def steps():
+        for height in (1, 9):
+            yield fm.Step("move", points=[(0, 0), (1, 0), (0, height)], triangles=[(0, 1, 2)])
+
+    assert fm.record(steps()).min_angles() == pytest.approx([45, np.degrees(np.arctan(1 / 9))])
+
+
+def test_the_last_frame_of_the_textbook_has_only_the_points_that_are_left():
+    points = [(0, 0), (1, 0), (0, 1), (1, 1)]
+    mesh = fm.record(fm.textbook.bowyer_watson(points)).mesh
+    assert len(mesh.points) == 4
+    assert sorted(mesh.neighbors.ravel().tolist()) == [-1, -1, -1, -1, 0, 1]
+    mesh.validate(delaunay=True)
+
+
+@pytest.mark.parametrize(
+    ("triangles", "message"),
+    [([(0, 1, 3)], "point that is not there"), ([((0, 0), 1, 2)], "no triple of point numbers"), ([(0, 1)], "three corners")],
+)
+def test_a_lecturers_slip_is_named_with_its_step(triangles, message):
+    with pytest.raises(fm.MeshError, match=rf"step 0 \(slip\): triangle .*{message}"):
+        fm.record([fm.Step("slip", points=[(0, 0), (1, 0), (0, 1)], triangles=triangles)])
+
+
+def test_adding_a_triangle_twice_is_an_error():
+    with pytest.raises(fm.MeshError, match=r"step 1 \(again\) adds triangle .* there already"):
+        fm.record([fm.Step("once", added=[(0, 1, 2)]), fm.Step("again", added=[(1, 2, 0)])])
+
+
+def test_meshes_steps_and_traces_can_be_pickled_and_copied():
+    trace = lawson_trace()
+    for twin in (pickle.loads(pickle.dumps(trace)), copy.deepcopy(trace)):
+        assert repr(twin) == repr(trace)
+        assert [step.caption for step in twin] == [step.caption for step in trace]
+        np.testing.assert_array_equal(twin.mesh.neighbors, trace.mesh.neighbors)
+        assert dict(twin.mesh.work) == dict(trace.mesh.work)
 
 
 def test_a_list_of_steps_is_recorded_like_a_generator():

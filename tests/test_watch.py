@@ -105,6 +105,21 @@ def test_meshes_and_traces_show_a_picture_under_their_line_of_facts(trace):
         assert data["text/plain"] == repr(thing) == metadata["image/png"]["alt"]
 
 
+@pytest.mark.parametrize("height", [1e-3, 1e-7, 1e-12, 1e-30])
+def test_circles_of_almost_flat_triangles_are_drawn_in_no_time(height):
+    mesh = fm.delaunay([(0, 0), (1, 0), (0.5, height)])
+    mesh.plot(circles=True)._repr_mimebundle_()
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize(
+    "points", [fm.random_points(8) + 1e15, fm.random_points(8) * 1e38, fm.random_points(8) * 1e-40, [(1e38, 1e38)]]
+)
+def test_far_huge_and_tiny_point_sets_are_drawn_without_a_warning(points):
+    fm.delaunay(points).plot(circles=True)._repr_mimebundle_()
+    fm.record(fm.bowyer_watson(points)).draw(-1)._repr_mimebundle_()
+
+
 def test_a_large_mesh_shows_its_middle():
     mesh = fm.delaunay(np.random.default_rng(0).random((20_000, 2)))
     picture = mesh._repr_mimebundle_()[0]

@@ -102,7 +102,7 @@ def _order(points: np.ndarray, order: str | Iterable[int]) -> np.ndarray:
 
 def _watch(work: Workspace) -> Generator[Step, None, Mesh]:
     if work.note:
-        yield Step("done", work.note)
+        yield Step("done", work.note, new_points=[(v, *point) for v, point in enumerate(work.points.tolist())])
         return work.to_mesh()
     first = work.corners(0)
     assert first is not None

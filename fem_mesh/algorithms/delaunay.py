@@ -10,7 +10,7 @@ from fem_mesh.kernel import run
 from fem_mesh.mesh.mesh import Mesh
 from fem_mesh.mesh.order import insertion_order
 from fem_mesh.mesh.points import as_points
-from fem_mesh.mesh.workspace import NEXT, Workspace
+from fem_mesh.mesh.workspace import FLIPPED, NEXT, Workspace
 
 
 def delaunay(points: Any, triangles: Any = None) -> Mesh:
@@ -30,7 +30,7 @@ def delaunay(points: Any, triangles: Any = None) -> Mesh:
     """
     if triangles is not None:
         work = begin_from(points, triangles)
-        run(flip_edges, flip_state(work), len(work.points))
+        run(flip_edges, flip_state(work), len(work.points), done=lambda: work.state.item(FLIPPED))
         return work.to_mesh()
     points = as_points(points)
     work = Workspace.of_points(points, insertion_order(points))

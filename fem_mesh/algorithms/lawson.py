@@ -9,9 +9,6 @@
 Lift every point (x, y) to the height x^2 + y^2: each flip lowers the surface that the triangles form
 there, and no edge that was flipped away ever comes back. So it ends, after at most n (n - 1) / 2 flips,
 from any triangulation; but only if every sign is exact. With rounded signs it can run for ever.
-
-Edges at a ghost vertex follow the same rule: where the boundary turns inward the notch is filled, and
-the triangles end up covering the convex hull.
 """
 
 from __future__ import annotations
@@ -94,7 +91,7 @@ def flip_state(work: Workspace) -> tuple[np.ndarray, ...]:
 def begin_from(points: Any, triangles: Any) -> Workspace:
     """The half-edges of any valid triangulation of ``points``, checked; clockwise triangles are turned round.
 
-    Raises MeshError where triangles overlap, are flat, leave a hole or a point out, or are not connected.
+    Raises MeshError where triangles overlap, are flat, or leave a hole, a notch or a point out.
     """
     points, triangles = as_points(points), quality.as_triangles(triangles)
     if not len(triangles):
@@ -104,9 +101,7 @@ def begin_from(points: Any, triangles: Any) -> Workspace:
     twins = validators.check_edges(points, triangles)
     validators.check_topology(points, triangles)
     validators.check_realization(points, triangles)
-    loops = len(validators.trace_loops(*validators.boundary_edges(points, triangles)))
-    if loops != 1:
-        raise MeshError(f"the triangles have {loops} boundaries instead of 1: there is a hole, or more than one piece")
+    validators.check_hull(points, triangles)
     work = Workspace.of_triangles(points, triangles, twins)
     work.merge_unused(triangles)
     return work
@@ -119,8 +114,8 @@ def lawson(points: Any, triangles: Any) -> Generator[Step, None, Mesh]:
     """Delaunay triangulation by flips, from any triangulation: yields every test and flip; returns the Mesh.
 
     points : (n, 2) numbers
-    triangles : (m, 3) point numbers, any valid triangulation that uses all points; clockwise triangles
-        are turned round. If it does not cover the convex hull, the notches are filled.
+    triangles : (m, 3) point numbers, any valid triangulation that uses all points and covers their
+        convex hull; clockwise triangles are turned round
 
     Raises MeshError where the triangles are no triangulation, naming the first offender. Source: Lawson 1977.
 
@@ -164,10 +159,6 @@ def _watch(work: Workspace) -> Generator[Step, None, Mesh]:
         if -1 in (*edge, left, right) and event == LEGAL:
             continue  # a hull edge: nothing to test
         tests += 1
-        if -1 in edge:  # the boundary turns inward at v
-            v = max(edge)
-            yield Step("test", say_notch, edges=((left, v), (v, right)), point=tuple(work.points[v].tolist()), v=v)
-            continue
         verdict, distance, radius = _measure(work, edge, left, right)
         yield Step(
             "test", say_test, edges=(edge,), circles=before[:1], doomed=before if event == ILLEGAL else (),
@@ -212,16 +203,8 @@ def say_test(step: Step) -> str:
     return f"edge {a}-{b} {verdict} the circle of {a}, {b}, {c} ({numbers})"
 
 
-def say_notch(step: Step) -> str:
-    (a, v), (_, b) = step.edges
-    a, b = sorted((a, b))
-    return f"the boundary turns inward at vertex {v}: triangle {a}, {v}, {b} will fill the notch"
-
-
 def say_flip(step: Step) -> str:
     (a, b), (c, d) = sorted(step.facts["old"]), sorted(step.facts["new"])
-    if a == -1:
-        return f"edge {c}-{d} closes the notch at vertex {b}"
     left, right = step.facts["left"], step.facts["right"]
     return f"edge {a}-{b} is flipped to {c}-{d}: vertex {right} lay inside the circle of {a}, {b}, {left}"
 

@@ -43,40 +43,46 @@ class Mesh:
     note: str
     work: Mapping[str, int]
 
-    def __init__(
+    def __init__(self, points: Any, triangles: Any, *, segments: Any = None, regions: Any = None, note: str = "") -> None:
+        points, triangles = as_points(points), quality.as_triangles(triangles)
+        validators.check_elements(points, triangles)
+        triangles = quality.counter_clockwise(points, triangles)
+        twins = validators.check_edges(points, triangles)
+        neighbors = np.where(twins < 0, -1, twins // 3)[:, [1, 2, 0]].astype(np.int32)
+        segments = np.array([] if segments is None else segments, np.int32).reshape(-1, 2)
+        regions = np.zeros(len(triangles), np.int32) if regions is None else np.array(regions, np.int32)
+        self._fill(points, triangles, neighbors, segments, np.arange(len(points), dtype=np.int32), regions, note, {})
+
+    @classmethod
+    def _of(cls, points: np.ndarray, triangles: np.ndarray, neighbors: np.ndarray, *rest: Any) -> Mesh:
+        """A mesh that takes over the arrays of an algorithm of ours, unchecked."""
+        mesh = object.__new__(cls)
+        mesh._fill(points, triangles, neighbors, *rest)
+        return mesh
+
+    def _fill(
         self,
-        points: Any,
-        triangles: Any,
-        neighbors: np.ndarray | None = None,
-        *,
-        segments: Any = None,
-        merged_into: np.ndarray | None = None,
-        regions: Any = None,
-        note: str = "",
-        work: Mapping[str, int] | None = None,
+        points: np.ndarray,
+        triangles: np.ndarray,
+        neighbors: np.ndarray,
+        segments: np.ndarray,
+        merged_into: np.ndarray,
+        regions: np.ndarray,
+        note: str,
+        work: Mapping[str, int],
     ) -> None:
-        if neighbors is None:  # not from an algorithm of ours: look at it first
-            points, triangles = as_points(points), quality.as_triangles(triangles)
-            validators.check_elements(points, triangles)
-            triangles = quality.counter_clockwise(points, triangles)
-            twins = validators.check_edges(points, triangles)
-            neighbors = np.where(twins < 0, -1, twins // 3)[:, [1, 2, 0]].astype(np.int32)
-        arrays = {
-            "points": points,
-            "triangles": triangles,
-            "neighbors": neighbors,
-            "segments": np.array([] if segments is None else segments, np.int32).reshape(-1, 2),
-            "merged_into": np.arange(len(points), dtype=np.int32) if merged_into is None else merged_into,
-            "regions": np.zeros(len(triangles), np.int32) if regions is None else np.array(regions, np.int32),
-        }
-        for name, array in arrays.items():
-            array.flags.writeable = False
-            object.__setattr__(self, name, array.view())  # a view of it cannot be made writeable again
-        object.__setattr__(self, "note", note)
-        object.__setattr__(self, "work", MappingProxyType(dict(work or {})))
+        for name, value in list(locals().items())[1:]:
+            if isinstance(value, np.ndarray):
+                value.flags.writeable = False
+                value = value.view()  # a view of it cannot be made writeable again
+            object.__setattr__(self, name, MappingProxyType(dict(value)) if name == "work" else value)
 
     def __setattr__(self, name: str, value: Any) -> None:
         raise AttributeError(f"a Mesh does not change: make a new one instead of setting {name!r}")
+
+    def __reduce__(self) -> Any:
+        arrays = (self.points, self.triangles, self.neighbors, self.segments, self.merged_into, self.regions)
+        return Mesh._of, (*(array.copy() for array in arrays), self.note, dict(self.work))
 
     def __delattr__(self, name: str) -> None:
         raise AttributeError(f"a Mesh does not change: {name!r} cannot be deleted")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numbers
+from collections.abc import Set
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,7 @@ from fem_mesh.predicates import LARGEST, SMALLEST
 
 LARGEST_INTEGER = 2**53  # integers up to here are doubles
 MARGIN = 0.06  # around the points, as a share of their extent
+NARROWEST = 1e-10  # a view box, as a share of its distance from the origin: axes are drawn in rounded numbers
 GRAIN = 2.0**30  # made points are multiples of 2^-30: other machines' sines give the same mesh
 
 
@@ -47,6 +49,8 @@ def as_points(points: Any) -> np.ndarray:
 
 def _read(points: Any) -> np.ndarray:
     """``points`` as an array (n, 2) of real numbers, of whatever type they are."""
+    if isinstance(points, Set):
+        raise MeshError("points must have an order, since triangles name them by number: give a list instead of a set")
     if np.ma.isMaskedArray(points):
         _refuse(np.ma.getmaskarray(points), np.asarray(points), "is masked: drop it first")
     try:
@@ -58,14 +62,17 @@ def _read(points: Any) -> np.ndarray:
     if given.ndim != 2 or given.shape[1] != 2:
         raise MeshError(_shape_complaint(points, given))
     if given.dtype.kind not in "fiub":
-        for row, (x, y) in enumerate(points):
+        for row, (x, y) in enumerate(given if hasattr(points, "__array__") else points):
             if not (isinstance(x, numbers.Real) and isinstance(y, numbers.Real)):
                 raise MeshError(f"point {row} is ({x!r}, {y!r}), not a pair of real numbers")
     return given
 
 
 def _refuse_large_integers(points: Any, given: np.ndarray) -> None:
-    large = [[isinstance(v, numbers.Integral) and abs(int(v)) > LARGEST_INTEGER for v in pair] for pair in points]
+    if given.dtype.kind == "f" and hasattr(points, "__array__"):
+        return
+    rows = given if hasattr(points, "__array__") else points
+    large = [[isinstance(v, numbers.Integral) and abs(int(v)) > LARGEST_INTEGER for v in pair] for pair in rows]
     _refuse(np.array(large), given, "has an integer above 2^53, which need not be a double: scale the points")
 
 
@@ -91,7 +98,8 @@ def view_box(points: np.ndarray) -> tuple[float, float, float, float]:
     if not len(points):
         return -1.0, 1.0, -1.0, 1.0
     low, high = points.min(axis=0), points.max(axis=0)
-    margin = MARGIN * (float((high - low).max()) or 1.0)
+    far = float(np.abs([low, high]).max())
+    margin = max(MARGIN * float((high - low).max()), NARROWEST * far) or 1.0
     (left, bottom), (right, top) = (low - margin).tolist(), (high + margin).tolist()
     return left, right, bottom, top
 
@@ -109,14 +117,14 @@ def random_points(n: int, seed: int = 0) -> np.ndarray:
 
 
 def ring_points(n: int, radius: float = 1.0, center: tuple[float, float] = (0.0, 0.0)) -> np.ndarray:
-    """``n`` points on a circle, as nearly as doubles allow: float64 (n, 2), counter-clockwise from the right.
+    """``n`` points on a circle, to within 2^-30 of its radius: float64 (n, 2), counter-clockwise from the right.
 
     >>> ring_points(4).tolist()
     [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]]
     """
     angle = 2 * np.pi * np.arange(n) / max(n, 1)
-    ring = _round(np.column_stack([np.cos(angle), np.sin(angle)]) * radius)
-    return np.asarray(ring + np.asarray(center, float))
+    ring = _round(np.column_stack([np.cos(angle), np.sin(angle)]))
+    return np.asarray(radius * ring + np.asarray(center, float))
 
 
 def grid_points(columns: int, rows: int | None = None) -> np.ndarray:

@@ -18,7 +18,7 @@ THIN = 1e-6  # area to the square of the size: flatter triangles are measured in
 def as_triangles(triangles: Any) -> np.ndarray:
     """``triangles`` as a new int32 array (m, 3). Raises MeshError where they are no triples of integers."""
     try:
-        given = np.asarray(triangles if hasattr(triangles, "__len__") else list(triangles))
+        given = np.asarray(triangles if hasattr(triangles, "__array__") else list(triangles))
     except (TypeError, ValueError):
         raise MeshError(f"triangles must be rows of three point numbers, not {triangles!r:.80}") from None
     if given.size == 0:
@@ -27,8 +27,8 @@ def as_triangles(triangles: Any) -> np.ndarray:
         raise MeshError(f"triangles must have the shape (m, 3), not {given.shape}: one row (a, b, c) a triangle")
     if given.dtype.kind not in "iu":
         raise MeshError(f"triangles must be triples of point numbers (integers), not {given.dtype}")
-    if abs(given).max() > np.iinfo(np.int32).max:
-        raise MeshError(f"triangles has the point number {given.max()}, which is no int32")
+    for v in given[(given < -1) | (given > np.iinfo(np.int32).max)][:1]:
+        raise MeshError(f"triangles has the point number {v}, which names no point")
     return given.astype(np.int32)
 
 

@@ -133,6 +133,19 @@ def check_delaunay(points: np.ndarray, triangles: np.ndarray) -> None:
     if offender[0] >= 0:
         t, v = offender.tolist()
         raise MeshError(f"the circle of triangle {t} = {_row(triangles, t)} holds point {v} at {_at(points, v)}")
+    check_hull(points, triangles)
+    if len(triangles) == 0 and not on_a_line(points):
+        raise MeshError("the convex hull is not covered: there is no triangle, but the points do not lie on a line")
+    lost = np.setdiff1d(np.arange(len(points)), triangles)
+    if len(lost) and len(triangles):
+        used = {tuple(p) for p in points[np.unique(triangles)].tolist()}
+        for v in lost.tolist():
+            if tuple(points[v].tolist()) not in used:
+                raise MeshError(f"point {v} at {_at(points, v)} is in no triangle")
+
+
+def check_hull(points: np.ndarray, triangles: np.ndarray) -> None:
+    """The triangles cover the convex hull: one boundary, which never turns right."""
     starts, ends = boundary_edges(points, triangles)
     if len(trace_loops(starts, ends)) > 1:
         raise MeshError("the convex hull is not covered: the mesh has a hole, or more than one piece")
@@ -142,14 +155,6 @@ def check_delaunay(points: np.ndarray, triangles: np.ndarray) -> None:
         c = int(after[b])
         if orient_sign(*points[a], *points[b], *points[c]) < 0:
             raise MeshError(f"the convex hull is not covered: the boundary turns right at point {b}, {_at(points, b)}")
-    if len(triangles) == 0 and not on_a_line(points):
-        raise MeshError("the convex hull is not covered: there is no triangle, but the points do not lie on a line")
-    lost = np.setdiff1d(np.arange(len(points)), triangles)
-    if len(lost) and len(triangles):
-        used = {tuple(p) for p in points[np.unique(triangles)].tolist()}
-        for v in lost.tolist():
-            if tuple(points[v].tolist()) not in used:
-                raise MeshError(f"point {v} at {_at(points, v)} is in no triangle")
 
 
 # ---- what they stand on ------------------------------------------------------------------------------
@@ -162,9 +167,11 @@ def boundary_edges(points: np.ndarray, triangles: np.ndarray) -> tuple[np.ndarra
 
 
 def find_crossing(points: np.ndarray, starts: np.ndarray, ends: np.ndarray) -> tuple[Any, Any] | None:
-    """Two boundary edges that share more than an end, or None: a sweep from left to right over their extents."""
-    low = np.minimum(points[starts, 0], points[ends, 0])
-    high = np.maximum(points[starts, 0], points[ends, 0])
+    """Two boundary edges that share more than an end, or None: a sweep over their extents."""
+    low, high = np.minimum(points[starts], points[ends]), np.maximum(points[starts], points[ends])
+    lengths, extent = (high - low).sum(axis=0), np.ptp(points, axis=0)
+    axis = int(lengths[1] * extent[0] < lengths[0] * extent[1])  # the one along which fewer edges overlap
+    low, high = low[:, axis], high[:, axis]
     order = np.argsort(low, kind="stable")
     pair = np.full(2, -1)
     call(find_crossing_pair, points, starts[order], ends[order], low[order], high[order], pair, size=len(order))
@@ -188,6 +195,10 @@ def find_crossing_pair(points, starts, ends, low, high, pair):
 @kernel
 def do_cross(points, a, b, c, d):
     """Whether segments ab and cd share a point that is not an end of both."""
+    if max(points[a, 0], points[b, 0]) < min(points[c, 0], points[d, 0]):
+        return False
+    if max(points[c, 0], points[d, 0]) < min(points[a, 0], points[b, 0]):
+        return False
     if max(points[a, 1], points[b, 1]) < min(points[c, 1], points[d, 1]):
         return False
     if max(points[c, 1], points[d, 1]) < min(points[a, 1], points[b, 1]):
@@ -199,7 +210,7 @@ def do_cross(points, a, b, c, d):
     if a == d:
         return abc == 0 and is_same_side(points, a, b, c)
     if abc == 0 and abd == 0:  # on one line
-        return max(points[a, 0], points[b, 0]) >= min(points[c, 0], points[d, 0])
+        return True
     return abc * abd <= 0 and cda * cdb <= 0
 
 

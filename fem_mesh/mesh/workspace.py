@@ -141,18 +141,13 @@ class Workspace:
             merged_into = np.arange(n, dtype=np.int32)
             doubles = np.flatnonzero(self.merged != np.arange(n + 1))
             merged_into[self.name[doubles]] = self.name[self.merged[doubles]]
-        return Mesh(
-            self.points,
-            triangles[:m],
-            neighbors[:m],
-            merged_into=merged_into,
-            note=self.note,
-            work={
-                "in_circle tests": int(self.state[TESTED]),
-                "walk steps": int(self.state[WALKED]),
-                "flips": int(self.state[FLIPPED]),
-            },
-        )
+        segments, regions = np.empty((0, 2), np.int32), np.zeros(m, np.int32)
+        work = {
+            "in_circle tests": int(self.state[TESTED]),
+            "walk steps": int(self.state[WALKED]),
+            "flips": int(self.state[FLIPPED]),
+        }
+        return Mesh._of(self.points, triangles[:m], neighbors[:m], segments, merged_into, regions, self.note, work)
 
     def corners(self, t: int) -> tuple[int, int, int] | None:
         """The user's indices of triangle ``t``, counter-clockwise; None for a ghost triangle."""

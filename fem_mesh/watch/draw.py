@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import base64
-import io
+import math
 import textwrap
 from collections.abc import Iterable
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -15,10 +13,10 @@ from matplotlib.collections import EllipseCollection, LineCollection, PolyCollec
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
-from PIL import Image
 
 from fem_mesh.mesh.points import view_box
 from fem_mesh.mesh.quality import circumcircle
+from fem_mesh.watch.picture import Picture
 from fem_mesh.watch.style import INK, PAPER, ROLES, color_of
 
 if TYPE_CHECKING:
@@ -26,52 +24,10 @@ if TYPE_CHECKING:
     from fem_mesh.trace import Trace
 
 SIZE = (6.4, 5.6)  # inches
-DPI = 110
-COLORS = 128  # of a notebook's pictures
+VIEWS = 20  # circles larger than so many views are drawn as an arc
 MOST_NUMBERS = 60  # more points than this go without numbers, unless asked
 MOST_SHOWN = 3_000  # a mesh's picture in a notebook shows a part, beyond so many triangles
 LETTERS_AN_INCH = 10.5  # of caption
-
-
-class Picture:
-    """A Matplotlib figure with a sentence that says what it shows.
-
-    As a cell's result it shows the figure, with the sentence as the image's alternative text and as
-    ``text/plain``; so it is the same wherever the notebook runs. ``figure`` and ``axes`` are
-    Matplotlib's own; ``save(path)`` writes a file.
-
-    >>> from matplotlib.figure import Figure
-    >>> Picture(Figure(), "an empty page")
-    an empty page
-    """
-
-    def __init__(self, figure: Figure, alt: str) -> None:
-        self.figure, self.alt = figure, alt
-
-    @property
-    def axes(self) -> Axes:
-        return self.figure.axes[0]
-
-    def save(self, path: Any) -> None:
-        """Write the figure to ``path``; the ending decides the format, as Matplotlib reads it."""
-        if str(path).endswith(".png"):
-            Path(path).write_bytes(self._png(2 * DPI))
-        else:
-            self.figure.savefig(path, facecolor=self.figure.get_facecolor())
-
-    def __repr__(self) -> str:
-        return self.alt
-
-    def _repr_mimebundle_(self, include: Any = None, exclude: Any = None) -> Any:
-        data = {"text/plain": self.alt, "image/png": base64.b64encode(self._png(DPI)).decode()}
-        return data, {"image/png": {"alt": self.alt}}
-
-    def _png(self, dpi: int) -> bytes:
-        """The figure with COLORS colours: a third of the size, and no difference to the eye."""
-        full, small = io.BytesIO(), io.BytesIO()
-        self.figure.savefig(full, format="png", dpi=dpi, facecolor=self.figure.get_facecolor())
-        Image.open(full).convert("RGB").quantize(COLORS).save(small, format="png", optimize=True)
-        return small.getvalue()
 
 
 def new_axes(dark: bool = False, size: tuple[float, float] = SIZE) -> Axes:
@@ -106,6 +62,7 @@ def draw_step(
     step = trace[k]
     points, triangles = trace.frame(k)
     everything = trace.all_points()
+    everything[: len(points)] = np.where(np.isnan(points), everything[: len(points)], points)
     shown: list[str] = []
     page.clear()
     _set_view(page, trace.view_box(), dark)
@@ -248,11 +205,20 @@ def _edges(
 
 def _circles(page: Axes, points: np.ndarray, triangles: Iterable[Any], dark: bool, shown: list[str]) -> None:
     circles = [circumcircle(*points[list(t)].ravel().tolist()) for t in triangles]
-    circles = [circle for circle in circles if np.isfinite(circle[2])]
+    left, right, bottom, top = (*page.get_xlim(), *page.get_ylim())
+    center, reach = ((left + right) / 2, (bottom + top) / 2), math.hypot(right - left, top - bottom) / 2
+    role = ROLES["circle"]
+    large = [circle for circle in circles if VIEWS * reach < circle[2] < math.inf]
+    arcs = LineCollection([_arc(*circle, center, reach) for circle in large], colors=color_of("circle", dark), zorder=3.6)
+    arcs.set_linewidth(role.width)
+    arcs.set_linestyle((0, role.dash))
+    page.add_collection(arcs, autolim=False)
+    circles = [circle for circle in circles if circle[2] <= VIEWS * reach]
+    if large or circles:
+        shown.append("circle")
     if not circles:
         return
     x, y, radius = np.array(circles).T
-    role = ROLES["circle"]
     page.add_collection(
         EllipseCollection(
             2 * radius, 2 * radius, np.zeros(len(x)), units="xy", offsets=np.column_stack([x, y]),
@@ -261,7 +227,16 @@ def _circles(page: Axes, points: np.ndarray, triangles: Iterable[Any], dark: boo
         ),
         autolim=False,
     )  # fmt: skip
-    shown.append("circle")
+
+
+def _arc(x: float, y: float, radius: float, center: tuple[float, float], reach: float) -> np.ndarray:
+    """The part near the view of a circle much larger than it: Matplotlib would dash all of it, for ever."""
+    away = np.array([center[0] - x, center[1] - y])
+    normal = away / max(float(np.hypot(*away)), 1e-300)
+    angle = np.linspace(-2, 2, 65) * reach / radius
+    foot = np.array([x, y]) + radius * normal
+    along, inward = radius * np.sin(angle), -2 * radius * np.sin(angle / 2) ** 2
+    return np.asarray(foot + along[:, None] * np.array([-normal[1], normal[0]]) + inward[:, None] * normal)
 
 
 def _markers(page: Axes, points: np.ndarray, name: str, dark: bool, shown: list[str], listed: bool = True) -> None:

@@ -12,7 +12,8 @@ from matplotlib.figure import Figure
 from tqdm import tqdm
 
 from fem_mesh.errors import MeshError
-from fem_mesh.watch.draw import DPI, Picture, draw_step, new_axes
+from fem_mesh.watch.draw import draw_step, new_axes
+from fem_mesh.watch.picture import DPI, Picture
 from fem_mesh.watch.style import PAPER
 
 if TYPE_CHECKING:
@@ -34,10 +35,13 @@ def save_trace(trace: Trace, path: Any, *, fps: float = 2.0, steps: Iterable[int
     path = Path(path)
     if not len(trace):
         raise MeshError("there is no step to save: the trace is empty")
-    if path.suffix == ".png":
-        contact_sheet(trace, steps, **options).save(path)
-    elif path.suffix in (".gif", ".mp4"):
-        _save_film(trace, path, fps, range(len(trace)) if steps is None else steps, options)
+    chosen = None if steps is None else list(steps)
+    if chosen == []:
+        raise MeshError("there is no step to save: steps is empty")
+    if path.suffix.lower() == ".png":
+        contact_sheet(trace, chosen, **options).save(path)
+    elif path.suffix.lower() in (".gif", ".mp4"):
+        _save_film(trace, path, fps, chosen or range(len(trace)), options)
     else:
         raise MeshError(f"a trace is saved as .gif, .mp4 or .png, not as {path.suffix or path.name!r}")
 
@@ -76,13 +80,13 @@ def choose_steps(n: int) -> list[int]:
 def _save_film(trace: Trace, path: Path, fps: float, steps: Iterable[int], options: dict[str, Any]) -> None:
     from matplotlib.animation import FFMpegWriter, FuncAnimation, PillowWriter
 
-    if path.suffix == ".mp4" and shutil.which("ffmpeg") is None:
+    if path.suffix.lower() == ".mp4" and shutil.which("ffmpeg") is None:
         raise MeshError("an .mp4 needs the program ffmpeg, which is not installed: save a .gif instead")
     page = new_axes(bool(options.get("dark", False)))
     frames = list(steps)
     frames += frames[-1:] * int(HOLD * fps)
     film = FuncAnimation(page.figure, lambda k: (draw_step(trace, k, page, **options),), frames, init_func=lambda: ())  # type: ignore[arg-type, return-value]
-    writer = PillowWriter(fps=fps) if path.suffix == ".gif" else FFMpegWriter(fps=fps)  # type: ignore[arg-type]
+    writer = PillowWriter(fps=fps) if path.suffix.lower() == ".gif" else FFMpegWriter(fps=fps)  # type: ignore[arg-type]
     with tqdm(total=len(frames), desc=path.name, delay=2, leave=False) as bar:
         film.save(
             str(path), writer=writer, dpi=DPI, savefig_kwargs={"facecolor": page.figure.get_facecolor()},
