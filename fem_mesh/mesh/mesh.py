@@ -71,11 +71,19 @@ class Mesh:
         note: str,
         work: Mapping[str, int],
     ) -> None:
-        for name, value in list(locals().items())[1:]:
-            if isinstance(value, np.ndarray):
-                value.flags.writeable = False
-                value = value.view()  # a view of it cannot be made writeable again
-            object.__setattr__(self, name, MappingProxyType(dict(value)) if name == "work" else value)
+        arrays = {
+            "points": points,
+            "triangles": triangles,
+            "neighbors": neighbors,
+            "segments": segments,
+            "merged_into": merged_into,
+            "regions": regions,
+        }
+        for name, array in arrays.items():
+            array.flags.writeable = False
+            object.__setattr__(self, name, array.view())  # a view of it cannot be made writeable again
+        object.__setattr__(self, "note", note)
+        object.__setattr__(self, "work", MappingProxyType(dict(work)))
 
     def __setattr__(self, name: str, value: Any) -> None:
         raise AttributeError(f"a Mesh does not change: make a new one instead of setting {name!r}")
