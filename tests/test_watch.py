@@ -37,6 +37,12 @@ def test_drawing_on_given_axes_returns_them_and_clears_them_first(trace):
     assert fm.delaunay(fm.random_points(5)).plot(ax) is ax
 
 
+def test_drawing_on_the_axes_of_a_subfigure_works(trace):
+    left, right = Figure().subfigures(1, 2)
+    trace.draw(2, left.subplots())
+    fm.delaunay(fm.random_points(5)).plot(right.subplots())
+
+
 def test_drawing_opens_no_window_and_leaves_no_figure_behind(trace):
     before = plt.get_fignums()
     trace.draw(3)

@@ -151,8 +151,8 @@ def _draw_mesh(page: Axes, points: np.ndarray, triangles: np.ndarray, circles: b
 
 def _set_view(page: Axes, box: tuple[float, float, float, float], dark: bool) -> None:
     # The box grows to the shape of the axes: equal scales, and every frame fills the same place.
-    place, (wide, high) = page.get_position(original=True), page.figure.get_size_inches()  # type: ignore[union-attr]
-    shape = (place.height * high) / (place.width * wide)
+    place, whole = page.get_position(original=True), page.figure.bbox
+    shape = (place.height * whole.height) / (place.width * whole.width)
     width = max(box[1] - box[0], (box[3] - box[2]) / shape)
     x, y = (box[0] + box[1]) / 2, (box[2] + box[3]) / 2
     page.set_xlim(x - width / 2, x + width / 2)
@@ -288,6 +288,6 @@ def _legend(page: Axes, shown: list[str], dark: bool) -> None:
 
 
 def _caption(page: Axes, head: str, text: str, dark: bool) -> None:
-    width = page.get_position().width * page.figure.get_size_inches()[0]  # type: ignore[union-attr]
+    width = page.get_position().width * page.figure.bbox.width / page.figure.dpi  # inches
     lines = textwrap.wrap(text, int(LETTERS_AN_INCH * width))
     page.set_title("\n".join([head, *lines]), color=INK[dark], fontsize=12.5, loc="left", linespacing=1.35)
