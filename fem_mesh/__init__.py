@@ -14,9 +14,12 @@ from typing import TYPE_CHECKING, Any
 
 from fem_mesh import textbook
 from fem_mesh.algorithms.bowyer_watson import bowyer_watson
+from fem_mesh.algorithms.constrained_delaunay import constrained_delaunay, insert_segments
 from fem_mesh.algorithms.delaunay import delaunay
 from fem_mesh.algorithms.lawson import lawson
+from fem_mesh.algorithms.refine import refine
 from fem_mesh.algorithms.sweep import any_triangulation
+from fem_mesh.domain.domain import Domain
 from fem_mesh.errors import MeshError
 from fem_mesh.mesh.mesh import Mesh
 from fem_mesh.mesh.points import grid_points, random_points, ring_points
@@ -31,6 +34,7 @@ if TYPE_CHECKING:
 __version__ = "0.1.0"
 
 __all__ = [
+    "Domain",
     "Mesh",
     "MeshError",
     "Picture",
@@ -38,14 +42,17 @@ __all__ = [
     "Trace",
     "any_triangulation",
     "bowyer_watson",
+    "constrained_delaunay",
     "delaunay",
     "grid_points",
     "in_circle",
     "in_diametral_circle",
+    "insert_segments",
     "lawson",
     "orient",
     "random_points",
     "record",
+    "refine",
     "ring_points",
     "textbook",
     "validate",

@@ -12,7 +12,6 @@ This is the only file that knows Numba.
 
 from __future__ import annotations
 
-import collections
 import hashlib
 import inspect
 import pickle
@@ -28,6 +27,7 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 SETTLED = 16  # events from here on leave the arrays whole: a driver may stop after one
 EVENTS_A_CALL = 50_000  # compiled work returns to Python this often, for Ctrl-C and progress
+EVENTS_IN_PYTHON = 30_000  # a run that takes more than these (about a second) is compiled, however small it began
 SMALL = 3_000  # below this size a first call runs in plain Python rather than wait for a compiler
 PATIENCE = 2.0  # seconds of compiling before a line says so
 
@@ -88,11 +88,14 @@ def run(
     progress bar appears after two seconds). Returns the last event, ``(0, 0)`` if there was none.
     """
     arguments = (tuple(state), EVENTS_A_CALL)
-    if not worth_compiling(generator, arguments, size):
-        events = collections.deque(watch(generator, state), maxlen=1)
-        return events[-1] if events else (0, 0)
-    drain = compile_driver(generator, state)
     last = (0, 0)
+    if not worth_compiling(generator, arguments, size):
+        for count, last in enumerate(watch(generator, state)):
+            if count >= EVENTS_IN_PYTHON and last[0] >= SETTLED and _numba() is not None:
+                break  # it was not small after all: compiled code takes over
+        else:
+            return last
+    drain = compile_driver(generator, state)
     with _progress(total, generator.__name__) as bar:
         while True:
             finished, event, where = drain(*arguments)

@@ -20,6 +20,7 @@ class Step:
     doomed : triangles about to go
     visited : triangles looked at on the way
     circles : triangles whose circumcircles to show
+    segment_edges : pairs of point numbers to show as segments, from this step on where they are edges
     facts : the numbers behind the caption, by name
 
     A lecturer's own generator yields steps with the *full current lists* instead of differences, and

@@ -252,9 +252,7 @@ def _last_frame(trace: Trace) -> Mesh | None:
     try:
         return Mesh(points, triangles, note=note)
     except MeshError:  # broken, or with gaps among its points: to look at, all the same
-        n, none = len(points), np.full((len(triangles), 3), -1, np.int32)
-        segments, same, regions = np.empty((0, 2), np.int32), np.arange(n, dtype=np.int32), none[:, 0].copy()
-        return Mesh._of(points, triangles, none, segments, same, regions, note, {})
+        return Mesh._of(points, triangles, np.full((len(triangles), 3), -1, np.int32), note=note)
 
 
 def _turned(triangle: Any) -> Triangle:

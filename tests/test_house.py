@@ -15,6 +15,7 @@ FLOORS = [
     "kernel",
     "predicates",
     "mesh",
+    "domain",
     "steps",
     "textbook",
     "algorithms",
@@ -24,6 +25,7 @@ FLOORS = [
 ]  # from the ground up
 SHOWING = {  # the methods that show or export import what they call inside themselves
     ("mesh/mesh.py", "fem_mesh.watch.draw"),
+    ("domain/domain.py", "fem_mesh.watch.outline"),
     ("trace.py", "fem_mesh.watch.draw"),
     ("trace.py", "fem_mesh.watch.film"),
 }

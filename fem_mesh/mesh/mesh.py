@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections import Counter
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 from functools import cached_property
 from types import MappingProxyType
 from typing import Any
@@ -15,16 +17,47 @@ from fem_mesh.mesh.locator import Locator
 from fem_mesh.mesh.points import as_points
 
 
+@dataclass(frozen=True, eq=False)
+class Refinement:
+    """What ``refine`` achieved, and what it had to leave.
+
+    complete : every triangle keeps the bounds, but for those at a small input angle, which no mesher can mend
+    added : points added
+    left : the triangles that miss a bound, int32 (k,)
+    why : the reason for each of them: "small input angle", "budget" or "precision"
+    off_curve : added points that had to stay on a chord, since the way to their curve was not free
+    min_angle : the bound that was asked for, in degrees
+    """
+
+    complete: bool
+    added: int
+    left: np.ndarray
+    why: tuple[str, ...]
+    off_curve: int
+    min_angle: float
+
+    def __repr__(self) -> str:
+        state = "complete" if self.complete else "incomplete"
+        facts = [f"{state}, {self.added:,} point{'s' * (self.added != 1)} added"]
+        facts += [f"{count:,} triangle{'s' * (count != 1)} left ({why})" for why, count in Counter(self.why).items()]
+        facts += [f"{self.off_curve:,} of the points left on a chord"] if self.off_curve else []
+        return "Refinement: " + ", ".join(facts)
+
+
 class Mesh:
     """A triangle mesh. Its arrays are read-only; the points keep the user's numbering.
 
     points : float64 (n, 2)
     triangles : int32 (m, 3), counter-clockwise (clockwise ones that you give are turned round)
     neighbors : int32 (m, 3), the triangle opposite corner i, -1 at the boundary
-    segments : int32 (k, 2), edges that were asked for
+    segments : int32 (k, 2), edges that were asked for: a segment that was split is several, in its direction
+    segment_of : int32 (k,), the row of ``domain.segments`` that each lies on; -1 if it is only a boundary
+    boundaries : name -> rows of ``segments`` that carry it, int32
     merged_into : int32 (n,), each point's representative: itself, or the equal point with the lowest
         index (if you gave an order of insertion: the one inserted first)
-    regions : int32 (m,), the material of each triangle
+    regions : int32 (m,), the material of each triangle, an index into ``region_names`` ("" is none)
+    domain : the Domain that it is a mesh of, or None
+    refinement : what ``refine`` achieved (see ``Refinement``); None for other meshes
     note : why the mesh is empty or incomplete, else ""
     work : what it took: "in_circle tests", "walk steps", "flips"
 
@@ -39,25 +72,47 @@ class Mesh:
     neighbors: np.ndarray
     segments: np.ndarray
     merged_into: np.ndarray
-    regions: np.ndarray
+    region_names: tuple[str, ...]
+    segment_of: np.ndarray
+    boundaries: Mapping[str, np.ndarray]
+    domain: Any
+    refinement: Refinement | None
     note: str
     work: Mapping[str, int]
 
-    def __init__(self, points: Any, triangles: Any, *, segments: Any = None, regions: Any = None, note: str = "") -> None:
+    def __init__(
+        self,
+        points: Any,
+        triangles: Any,
+        *,
+        segments: Any = None,
+        regions: Any = None,
+        segment_of: Any = None,
+        boundaries: Mapping[str, Any] | None = None,
+        region_names: Iterable[str] = ("",),
+        note: str = "",
+    ) -> None:
         points, triangles = as_points(points), quality.as_triangles(triangles)
         validators.check_elements(points, triangles)
         triangles = quality.counter_clockwise(points, triangles)
         twins = validators.check_edges(points, triangles)
         neighbors = np.where(twins < 0, -1, twins // 3)[:, [1, 2, 0]].astype(np.int32)
         segments = np.array([] if segments is None else segments, np.int32).reshape(-1, 2)
-        regions = np.zeros(len(triangles), np.int32) if regions is None else np.array(regions, np.int32)
-        self._fill(points, triangles, neighbors, segments, np.arange(len(points), dtype=np.int32), regions, note, {})
+        validators.check_segments(points, triangles, segments)
+        self._fill(
+            points, triangles, neighbors,
+            segments=segments,
+            segment_of=None if segment_of is None else np.array(segment_of, np.int32),
+            boundaries={name: np.array(rows, np.int32) for name, rows in (boundaries or {}).items()},
+            regions=None if regions is None else np.array(regions, np.int32),
+            region_names=tuple(region_names), note=note,
+        )  # fmt: skip
 
     @classmethod
-    def _of(cls, points: np.ndarray, triangles: np.ndarray, neighbors: np.ndarray, *rest: Any) -> Mesh:
+    def _of(cls, points: np.ndarray, triangles: np.ndarray, neighbors: np.ndarray, **rest: Any) -> Mesh:
         """A mesh that takes over the arrays of an algorithm of ours, unchecked."""
         mesh = object.__new__(cls)
-        mesh._fill(points, triangles, neighbors, *rest)
+        mesh._fill(points, triangles, neighbors, **rest)
         return mesh
 
     def _fill(
@@ -65,32 +120,51 @@ class Mesh:
         points: np.ndarray,
         triangles: np.ndarray,
         neighbors: np.ndarray,
-        segments: np.ndarray,
-        merged_into: np.ndarray,
-        regions: np.ndarray,
-        note: str,
-        work: Mapping[str, int],
+        *,
+        segments: np.ndarray | None = None,
+        segment_of: np.ndarray | None = None,
+        merged_into: np.ndarray | None = None,
+        regions: np.ndarray | None = None,
+        boundaries: Mapping[str, np.ndarray] | None = None,
+        region_names: tuple[str, ...] = ("",),
+        domain: Any = None,
+        refinement: Refinement | None = None,
+        note: str = "",
+        work: Mapping[str, int] | None = None,
     ) -> None:
+        segments = np.empty((0, 2), np.int32) if segments is None else segments
         arrays = {
             "points": points,
             "triangles": triangles,
             "neighbors": neighbors,
             "segments": segments,
-            "merged_into": merged_into,
-            "regions": regions,
+            "segment_of": np.full(len(segments), -1, np.int32) if segment_of is None else segment_of,
+            "merged_into": np.arange(len(points), dtype=np.int32) if merged_into is None else merged_into,
+            "regions": np.zeros(len(triangles), np.int32) if regions is None else regions,
         }
+        put = object.__setattr__
         for name, array in arrays.items():
-            array.flags.writeable = False
-            object.__setattr__(self, name, array.view())  # a view of it cannot be made writeable again
-        object.__setattr__(self, "note", note)
-        object.__setattr__(self, "work", MappingProxyType(dict(work)))
+            put(self, name, _sealed(array))
+        put(self, "boundaries", MappingProxyType({name: _sealed(rows) for name, rows in (boundaries or {}).items()}))
+        put(self, "region_names", region_names)
+        put(self, "domain", domain)
+        put(self, "refinement", refinement)
+        put(self, "note", note)
+        put(self, "work", MappingProxyType(dict(work or {})))
 
     def __setattr__(self, name: str, value: Any) -> None:
         raise AttributeError(f"a Mesh does not change: make a new one instead of setting {name!r}")
 
-    def __reduce__(self) -> Any:
-        arrays = (self.points, self.triangles, self.neighbors, self.segments, self.merged_into, self.regions)
-        return Mesh._of, (*(array.copy() for array in arrays), self.note, dict(self.work))
+    def __getstate__(self) -> dict[str, Any]:
+        arrays = ("points", "triangles", "neighbors", "segments", "segment_of", "merged_into", "regions")
+        state: dict[str, Any] = {name: getattr(self, name).copy() for name in arrays}
+        state["boundaries"] = {name: rows.copy() for name, rows in self.boundaries.items()}
+        for name in ("region_names", "domain", "refinement", "note"):
+            state[name] = getattr(self, name)
+        return {**state, "work": dict(self.work)}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self._fill(**state)
 
     def __delattr__(self, name: str) -> None:
         raise AttributeError(f"a Mesh does not change: {name!r} cannot be deleted")
@@ -181,6 +255,8 @@ class Mesh:
     def __repr__(self) -> str:
         n, m = len(self.points), len(self.triangles)
         facts = [f"{n:,} point{'s' * (n != 1)}", f"{m:,} triangle{'s' * (m != 1)}"]
+        k = len(self.segments)
+        facts += [f"{k:,} segment{'s' * (k != 1)}"] if k else []
         doubles = int((self.merged_into != np.arange(n)).sum())
         facts += [f"{doubles:,} of the points merged"] if doubles else []
         facts += [f"smallest angle {self.min_angle:.1f} degrees"] if m else []
@@ -191,6 +267,12 @@ class Mesh:
         from fem_mesh.watch.draw import picture_of_mesh
 
         return picture_of_mesh(self)._repr_mimebundle_()
+
+
+def _sealed(array: np.ndarray) -> np.ndarray:
+    """A view of ``array`` that cannot be made writeable again."""
+    array.flags.writeable = False
+    return array.view()
 
 
 def _numbers(values: Any, name: str) -> np.ndarray:

@@ -71,6 +71,16 @@ def check_edges(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     return twins.reshape(-1, 3)
 
 
+def check_segments(points: np.ndarray, triangles: np.ndarray, segments: np.ndarray) -> None:
+    """Every segment is an edge of a triangle."""
+    low, high = np.minimum(triangles, np.roll(triangles, -1, axis=1)), np.maximum(triangles, np.roll(triangles, -1, axis=1))
+    edges = low.ravel().astype(np.int64) * len(points) + high.ravel()
+    asked = segments.min(axis=1, initial=len(points)).astype(np.int64) * len(points) + segments.max(axis=1, initial=-1)
+    for i in np.flatnonzero(~np.isin(asked, edges))[:1]:
+        a, b = segments[i].tolist()
+        raise MeshError(f"segment {i} = ({a}, {b}) is no edge of a triangle: constrained_delaunay puts segments in")
+
+
 def check_topology(points: np.ndarray, triangles: np.ndarray) -> None:
     """The boundary passes each vertex at most once, and V - E + F fits its loops (Euler's formula)."""
     if len(triangles) == 0:

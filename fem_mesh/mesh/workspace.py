@@ -33,7 +33,12 @@ WALKED = 3  # triangles crossed by walks
 TESTED = 4  # circles tested
 FLIPPED = 5  # edges flipped
 STACKED = 6  # half-edges waiting on the stack
-SLOTS = 8
+PIECE = 7  # the segment of the domain to insert next
+FROM = 8  # the vertex up to which it is there; 0 if it is not begun
+SEGMENTS = 9  # sub-segments
+FLOODED = 10  # triangles that the flood has left
+REACHED = 11  # triangles that it has reached
+SLOTS = 32  # the rest is for algorithms
 
 
 @dataclass
@@ -52,22 +57,23 @@ class Workspace:
     note: str = ""
 
     @classmethod
-    def _with_room(cls, points: np.ndarray, name: np.ndarray, xy: np.ndarray) -> Workspace:
+    def _with_room(cls, points: np.ndarray, name: np.ndarray, xy: np.ndarray, chains: bool = False) -> Workspace:
         room = max(2 * len(points), 4)  # n vertices and the ghost on a sphere have 2n - 2 triangles
+        beyond = room + 9 - room % 3 if chains else 0  # half-edges for the chains of segments.py
         return cls(
             points,
             name,
             xy,
             merged=np.arange(len(xy), dtype=np.uint32),
-            origin=np.empty(3 * room, np.uint32),
-            twin=np.empty(3 * room, np.uint32),
+            origin=np.empty(3 * room + beyond, np.uint32),
+            twin=np.empty(3 * room + beyond, np.uint32),
             cavity=np.empty(room + 2, np.uint32),
             ring=np.empty(3 * room + 3, np.uint32),
         )
 
     @classmethod
-    def of_points(cls, points: np.ndarray, order: np.ndarray) -> Workspace:
-        """Room to insert ``points`` one by one in ``order``, begun with the first triangle.
+    def of_points(cls, points: np.ndarray, order: np.ndarray, chains: bool = False) -> Workspace:
+        """Room to insert ``points`` one by one in ``order``, begun with the first triangle; ``chains``: segments too.
 
         That is the first triple in the order that is exactly non-collinear: points skipped on the way
         go in next. Without one nothing is begun, and ``note`` says why.
@@ -78,7 +84,7 @@ class Workspace:
         xy = np.empty((n + 1, 2))
         xy[GHOST] = 0.0
         np.take(points, order, axis=0, out=xy[1:])
-        work = cls._with_room(points, name, xy)
+        work = cls._with_room(points, name, xy, chains)
         work._begin(n)
         return work
 
@@ -134,20 +140,22 @@ class Workspace:
         triangles, neighbors = (array.view(np.int32).reshape(-1, 3) for array in (self.origin, self.twin))
         arrays = (self.origin, self.twin, self.name, number, triangles, neighbors)
         m = call(list_triangles, *arrays, size=len(self.points))
+        merged_into = self.merged_into() if m else _first_equal(self.points)
+        arrays = {"merged_into": merged_into, "note": self.note, "work": self.counters()}
+        return Mesh._of(self.points, triangles[:m], neighbors[:m], **arrays)
+
+    def merged_into(self) -> np.ndarray:
+        """Each point's representative under the user's numbers, int32 (n,)."""
         n = len(self.points)
-        if m == 0:
-            merged_into = _first_equal(self.points)
-        else:
-            merged_into = np.arange(n, dtype=np.int32)
-            doubles = np.flatnonzero(self.merged != np.arange(n + 1))
-            merged_into[self.name[doubles]] = self.name[self.merged[doubles]]
-        segments, regions = np.empty((0, 2), np.int32), np.zeros(m, np.int32)
-        work = {
-            "in_circle tests": int(self.state[TESTED]),
-            "walk steps": int(self.state[WALKED]),
-            "flips": int(self.state[FLIPPED]),
-        }
-        return Mesh._of(self.points, triangles[:m], neighbors[:m], segments, merged_into, regions, self.note, work)
+        result = np.arange(n, dtype=np.int32)
+        doubles = np.flatnonzero(self.merged[: n + 1] != np.arange(n + 1))
+        result[self.name[doubles]] = self.name[self.merged[doubles]]
+        return result
+
+    def counters(self) -> dict[str, int]:
+        """What it took so far."""
+        slots = {"in_circle tests": TESTED, "walk steps": WALKED, "flips": FLIPPED}
+        return {what: int(self.state[slot]) for what, slot in slots.items()}
 
     def corners(self, t: int) -> tuple[int, int, int] | None:
         """The user's indices of triangle ``t``, counter-clockwise; None for a ghost triangle."""

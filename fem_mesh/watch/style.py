@@ -39,6 +39,10 @@ ROLES = {
     "vertex": Role("vertex", "#222222", "#DDDDDD", marker="o", size=4.5),
     "waiting": Role("to come", "#888888", "#888888", marker="o", size=3.5),
     "point": Role("point", PURPLE, "#F29BC9", width=2.4, marker="o", size=13.0),
+    "inside": Role("inside", SKY, BLUE, width=0.0, fill=0.22),
+    "curve": Role("its curve", PURPLE, "#F29BC9", width=1.6, dash=(3.0, 1.5)),
+    "hole": Role("in a hole", VERMILLION, "#FF8A4C", width=2.6, marker="x", size=9.0),
+    "region": Role("region", GREEN, "#2FD1A2", width=1.0, marker="D", size=8.0),
 }
 
 PAPER = {False: "#FFFFFF", True: "#111318"}

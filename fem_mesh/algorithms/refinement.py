@@ -1,0 +1,330 @@
+"""What a refinement works on: the arrays of ``ruppert.refine_mesh``, made, grown and read."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from fem_mesh.algorithms.encroachment import (
+    CORNER,
+    FIRST_UNUSED,
+    LENS_COSINE,
+    OFFSET,
+    SHARP,
+    SHORTEST,
+    SPOT_X,
+    SPOT_Y,
+    in_range,
+    shell,
+)
+from fem_mesh.algorithms.steiner import COSINE, FINE, MAX_AREA, MAX_EDGE, NO_ANGLE, SKINNY, UNBOUNDED, is_excused, judge
+from fem_mesh.algorithms.worklists import (
+    ADDED,
+    BUCKETS,
+    FRESH,
+    GIVEN,
+    HEAD,
+    LABELLED,
+    LENS,
+    LOWEST,
+    MOST,
+    NONE,
+    NUMBER,
+    OFF_CURVE,
+    OFFCENTER,
+    UNSIZED,
+)
+from fem_mesh.errors import MeshError
+from fem_mesh.kernel import call, index, kernel
+from fem_mesh.mesh.halfedge import GHOST, is_ghost_triangle, next_edge, prev_edge
+from fem_mesh.mesh.mesh import Mesh, Refinement
+from fem_mesh.mesh.segmented import Segmented
+from fem_mesh.mesh.workspace import NEXT, SEGMENTS
+
+Size = Callable[[np.ndarray, np.ndarray], np.ndarray]
+OFFCENTER_SHARE = 0.475  # of the way to the point where the new triangle would just keep the bound (half an edge = 0.5)
+SMALLEST_PART = 2.0**-40  # of the domain's size: no edge shorter than this is split
+FEWEST = 100_000  # points that a refinement without a budget may always add
+SPARE = 4  # times as many as it is expected to need
+EQUILATERAL = math.sqrt(3) / 4  # area over squared edge
+USED = 0.5  # of a bound on areas and edges is what triangles use on average, roughly
+
+
+@dataclass(frozen=True)
+class Bounds:
+    """What a refinement is asked for."""
+
+    min_angle: float = 20.0
+    max_area: float = math.inf
+    max_edge: float = math.inf
+    size: Size | None = None
+    max_points: int | None = None
+    lens: bool = True
+    offcenter: bool = True
+
+
+@dataclass
+class Refiner:
+    """The arrays of one refinement. ``label`` is a triangle's region, plus the number of regions if it is left alone."""
+
+    parts: Segmented
+    bounds: Bounds
+    curves: Mapping[int, Any]
+    limit: np.ndarray  # one row a label: see steiner.py
+    label: np.ndarray
+    place: np.ndarray
+    curved: np.ndarray
+    wanted: np.ndarray
+    queue: np.ndarray
+    waiting: np.ndarray
+    limits: np.ndarray
+    domain: Any
+    expected: int = 0  # triangles, roughly
+    spent: bool = False  # whether the budget stopped it
+    bucket: np.ndarray = field(default_factory=lambda: np.full((BUCKETS, 2), NONE, np.int32))
+
+    @classmethod
+    def of(
+        cls, parts: Segmented, bounds: Bounds, curves: Mapping[int, Any], chosen: np.ndarray | None,
+        regions: tuple[Any, ...], domain: Any,
+    ) -> Refiner:  # fmt: skip
+        work = parts.work
+        kinds = len(parts.region_names)
+        limit = np.full((2 * kinds, 3), UNBOUNDED)
+        limit[:, COSINE] = NO_ANGLE
+        for k in range(kinds):
+            region = regions[k - 1] if 0 < k <= len(regions) else None
+            limit[k] = row_of_bounds(bounds, region)
+        label = np.zeros(parts.count, np.int32)
+        label[: len(parts.region)] = parts.region
+        if chosen is not None:
+            label[: len(chosen)] += kinds * ~chosen
+        cosine = math.cos(math.radians(bounds.min_angle))
+        limits = np.zeros(5)
+        limits[LENS_COSINE] = max(0.0, 2 * cosine * cosine - 1) ** 2
+        limits[OFFSET] = OFFCENTER_SHARE * math.sqrt((1 + cosine) / (1 - cosine)) if cosine < 1 else math.inf
+        extent = float(np.ptp(work.xy[1:], axis=0).max(initial=0.0))
+        limits[SHORTEST] = (SMALLEST_PART * extent) ** 2
+        curved = np.zeros(len(parts.ends) + 1, bool)  # the last row is that of NO_PIECE
+        curved[list(curves)] = True
+        refiner = cls(
+            parts, bounds, curves, limit, label, classify_vertices(parts), curved,
+            wanted=np.full(parts.count if bounds.size else 0, np.nan), queue=np.full((parts.count, 3), NONE, np.int32),
+            waiting=np.zeros((len(parts.edge_of), 2), np.uint32), limits=limits, domain=domain,
+        )  # fmt: skip
+        state = work.state
+        state[LENS], state[OFFCENTER], state[LABELLED] = bounds.lens, bounds.offcenter, bool(label.any())
+        state[LOWEST], state[MOST] = BUCKETS - 1, bounds.max_points or 0
+        real = ~ghosts_of(work.origin, parts.count) & (label < kinds)
+        refiner.expect(areas_of(work.xy[work.origin[: 3 * parts.count].reshape(-1, 3)[real]]), math.inf)
+        refiner.grow()
+        return refiner
+
+    def grow(self) -> None:
+        """Give every array room for half as much again, and some more."""
+        parts, work = self.parts, self.parts.work
+        vertices = int(1.5 * int(work.state[NEXT])) + 100
+        triangles = int(1.5 * parts.count) + 200
+        segments = int(1.5 * int(work.state[SEGMENTS])) + 100
+        work.xy = longer(work.xy, vertices)
+        self.place = longer(self.place, vertices)
+        work.origin, work.twin, parts.segment = (longer(a, 3 * triangles) for a in (work.origin, work.twin, parts.segment))
+        work.cavity, work.ring = np.empty(triangles + 2, np.uint32), np.empty(3 * triangles + 3, np.uint32)
+        self.label, self.queue = longer(self.label, triangles), longer(self.queue, triangles, NONE)
+        if len(self.wanted):
+            self.wanted = longer(self.wanted, triangles)
+        parts.edge_of, parts.piece_of = longer(parts.edge_of, segments), longer(parts.piece_of, segments)
+        self.waiting = lengthen_ring(self.waiting, segments, work.state)
+
+    def state(self) -> tuple[np.ndarray, ...]:
+        """The arrays that ``refine_mesh`` takes."""
+        parts, work = self.parts, self.parts.work
+        return (
+            work.xy, work.origin, work.twin, parts.segment, parts.edge_of, parts.piece_of, self.place, parts.ends,
+            self.curved, self.label, self.wanted, self.limit, self.queue, self.bucket, self.waiting, self.limits,
+            work.cavity, work.ring, work.state,
+        )  # fmt: skip
+
+    def size_triangles(self) -> None:
+        """Evaluate the size function where triangles wait for it, and let those that are too large be judged."""
+        work, size, count = self.parts.work, self.bounds.size, self.parts.count
+        assert size is not None
+        corner = work.origin[: 3 * count].reshape(-1, 3)
+        fresh = np.flatnonzero(np.isnan(self.wanted[:count]) & (corner != 0).all(axis=1))
+        triangles = work.xy[corner[fresh]]
+        places = np.concatenate([triangles, triangles.mean(axis=1, keepdims=True)], axis=1)
+        edge = evaluate_size(size, places.reshape(-1, 2)).reshape(-1, 4).min(axis=1, initial=np.inf)
+        edge[self.label[fresh] >= len(self.parts.region_names)] = np.inf
+        self.wanted[fresh] = edge
+        sides = triangles - np.roll(triangles, 1, axis=1)
+        long = fresh[(sides * sides).sum(axis=2).max(axis=1, initial=0.0) > edge * edge]
+        work.cavity[: len(long)] = long
+        work.state[FRESH], work.state[UNSIZED] = len(long), 0
+        self.expect(areas_of(triangles), edge)
+
+    def expect(self, areas: np.ndarray, edge: np.ndarray | float) -> None:
+        """Raise the budget to some times the points that triangles of these areas need, unless the user set it."""
+        bounds = self.bounds
+        target = np.minimum(bounds.max_area, EQUILATERAL * np.minimum(edge, bounds.max_edge) ** 2)
+        if len(self.limit) > 2:  # regions may ask for less
+            target = np.minimum(target, self.limit[:, MAX_AREA].min())
+            target = np.minimum(target, EQUILATERAL * self.limit[:, MAX_EDGE].min())
+        need = float((areas / target).sum()) / USED
+        self.expected = max(self.expected, int(min(need, 1e12)))
+        if bounds.max_points is None:
+            self.parts.work.state[MOST] = max(FEWEST, SPARE * self.expected // 2)
+
+    def split_on_curve(self) -> None:
+        """Find the point of a curve at which the next sub-segment is to be split."""
+        work, parts = self.parts.work, self.parts
+        s = int(self.waiting[work.state[HEAD], NUMBER])
+        row, h = int(parts.piece_of[s]), int(parts.edge_of[s])
+        a, b = int(work.origin[h]), int(work.origin[next_edge(h)])
+        if self.place[b] == SHARP and self.place[a] != SHARP:
+            a, b = b, a
+        start, end = tuple(work.xy[a].tolist()), tuple(work.xy[b].tolist())
+        sharp = self.place[a] == SHARP and self.place[b] != SHARP
+        x, y = point_on_shell(self.curves[row], start, end) if sharp else self.curves[row].between(start, end)
+        self.limits[SPOT_X], self.limits[SPOT_Y] = in_range(x), in_range(y)
+        work.state[GIVEN] = 1
+
+    def finish(self) -> Mesh:
+        """The mesh, with the report of what was achieved."""
+        parts, work, bounds = self.parts, self.parts.work, self.bounds
+        left, excused = np.empty(parts.count, np.int32), np.empty(parts.count, bool)
+        arrays = (work.xy, work.origin, parts.segment, self.place, parts.ends, self.label, self.wanted, self.limit)
+        k = call(list_left, *arrays, parts.count, left, excused, size=parts.count)
+        other = "budget" if self.spent else "precision"
+        why = tuple("small input angle" if e else other for e in excused[:k].tolist())
+        complete = not self.spent and bool(excused[:k].all())
+        number = np.cumsum(~ghosts_of(work.origin, parts.count)) - 1
+        refinement = Refinement(
+            complete=complete, added=int(work.state[ADDED]), left=number[left[:k]].astype(np.int32), why=why,
+            off_curve=int(work.state[OFF_CURVE]), min_angle=bounds.min_angle,
+        )  # fmt: skip
+        note = "" if complete else f"not refined to the end ({other}): {k:,} triangle{'s' * (k != 1)} left"
+        parts.region = self.label % len(parts.region_names)
+        self.name_new_vertices()
+        return parts.to_mesh(self.domain, refinement, note)
+
+    def name_new_vertices(self) -> None:
+        """Number the points added after those given, without gaps, in the order of their slots."""
+        work, n = self.parts.work, len(self.parts.work.points)
+        end = int(work.state[NEXT])
+        work.name = longer(work.name, end)
+        used = self.place[n + 1 : end] > FIRST_UNUSED
+        work.name[n + 1 : end] = np.where(used, n + np.cumsum(used) - 1, -1)
+
+
+def row_of_bounds(bounds: Bounds, region: Any) -> tuple[float, float, float]:
+    """The bounds of one label as steiner.py reads them."""
+    cosine = math.cos(math.radians(bounds.min_angle)) if bounds.min_angle > 0 else math.inf
+    size = min(bounds.max_edge, getattr(region, "size", None) or math.inf)
+    area = min(bounds.max_area, getattr(region, "max_area", None) or math.inf)
+    return min(cosine * cosine, NO_ANGLE), area, size * size
+
+
+def evaluate_size(size: Size, places: np.ndarray) -> np.ndarray:
+    """``size`` at ``places`` (k, 2). Raises MeshError where it is no positive number."""
+    values = np.asarray(size(places[:, 0].copy(), places[:, 1].copy()))
+    if values.dtype.kind not in "fiu" or values.shape not in ((), (len(places),)):
+        raise MeshError(
+            f"size(x, y) must return one number for each of the {len(places)} places in x, not {values.dtype} of shape "
+            f"{values.shape}: write it for arrays, with np.hypot, np.where, ..."
+        )
+    values = np.broadcast_to(values, len(places)).astype(np.float64)
+    for i in np.flatnonzero(~(values > 0))[:1]:
+        raise MeshError(f"size({places[i, 0]:.6g}, {places[i, 1]:.6g}) is {values[i]}: an edge length must be greater than 0")
+    return values
+
+
+def point_on_shell(curve: Any, start: tuple[float, float], end: tuple[float, float]) -> tuple[float, float]:
+    """The point of ``curve`` between its points ``start`` and ``end`` whose distance from ``start`` is a power of two."""
+    wanted = shell((end[0] - start[0]) ** 2 + (end[1] - start[1]) ** 2) * math.dist(start, end)
+    low, high = start, end
+    best: tuple[float, float] = curve.between(low, high)
+    for _ in range(60):  # each turn halves the arc, up to the last bit
+        distance = math.dist(start, best)
+        if abs(distance - wanted) <= 2.0**-40 * wanted:
+            break
+        low, high = (best, high) if distance < wanted else (low, best)
+        best = curve.between(low, high)
+    return best
+
+
+def classify_vertices(parts: Segmented) -> np.ndarray:
+    """What ``place`` holds of each vertex given: see encroachment.py."""
+    work, count = parts.work, int(parts.work.state[SEGMENTS])
+    place = np.full(len(work.xy), CORNER, np.int32)
+    h = parts.edge_of[1 : count + 1].astype(np.int64)
+    pairs = np.concatenate([work.origin[h], work.origin[np.where(h % 3 == 2, h - 2, h + 1)]])
+    piece = np.tile(parts.piece_of[1 : count + 1], 2)
+    low, high = np.full(len(place), len(parts.ends) + 1, np.int32), np.full(len(place), -1, np.int32)
+    np.minimum.at(low, pairs, piece)
+    np.maximum.at(high, pairs, piece)
+    within = (low == high) & (low >= 0)
+    within[parts.ends.ravel()] = False
+    place[within] = low[within] + 1
+    call(find_sharp_corners, work.xy, work.origin, work.twin, parts.segment, place, parts.count, size=parts.count)
+    return place
+
+
+@kernel
+def find_sharp_corners(xy, origin, twin, segment, place, count):
+    """Mark the corners where two sub-segments, with only triangles between them, meet at less than 60 degrees."""
+    for i in range(3 * count):
+        h = index(i)
+        if segment[h] == 0 or is_ghost_triangle(h, origin) or place[origin[h]] > 0:
+            continue
+        g = prev_edge(h)
+        while segment[g] == 0:  # counter-clockwise around the corner; each boundary edge is a segment
+            g = prev_edge(twin[g])
+        a, b, c = origin[h], origin[next_edge(h)], origin[g]
+        bx, by, cx, cy = xy[b, 0] - xy[a, 0], xy[b, 1] - xy[a, 1], xy[c, 0] - xy[a, 0], xy[c, 1] - xy[a, 1]
+        dot = bx * cx + by * cy
+        if bx * cy > by * cx and dot > 0.0 and 4.0 * dot * dot > (bx * bx + by * by) * (cx * cx + cy * cy):
+            place[a] = SHARP
+
+
+@kernel
+def list_left(xy, origin, segment, place, ends, label, wanted, limit, count, left, excused):
+    """List the triangles that miss a bound, and whether a small angle of the input excuses it; returns how many."""
+    k = 0
+    for t in range(count):
+        if is_ghost_triangle(index(3 * t), origin):
+            continue
+        verdict, h, _ = judge(index(t), xy, origin, label, limit, wanted)
+        if verdict != FINE:
+            left[k] = t
+            excused[k] = verdict == SKINNY and is_excused(h, xy, origin, segment, place, ends)
+            k += 1
+    return k
+
+
+def ghosts_of(origin: np.ndarray, count: int) -> np.ndarray:
+    return np.asarray((origin[: 3 * count].reshape(-1, 3) == GHOST).any(axis=1))
+
+
+def areas_of(corners: np.ndarray) -> np.ndarray:
+    """The areas of triangles given by their corners (m, 3, 2)."""
+    u, v = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    return np.asarray((u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]) / 2)
+
+
+def longer(array: np.ndarray, n: int, fill: Any = 0) -> np.ndarray:
+    """``array`` with room for ``n`` rows, of which the new ones are ``fill``."""
+    result = np.full((n, *array.shape[1:]), fill, array.dtype) if fill else np.zeros((n, *array.shape[1:]), array.dtype)
+    result[: len(array)] = array[:n]
+    return result
+
+
+def lengthen_ring(waiting: np.ndarray, n: int, state: np.ndarray) -> np.ndarray:
+    """The ring of sub-segments with room for ``n``, begun at its start again."""
+    result = longer(waiting, n)
+    result[: len(waiting), NUMBER] = np.roll(waiting[:, NUMBER], -int(state[HEAD]))
+    state[HEAD] = 0
+    return result

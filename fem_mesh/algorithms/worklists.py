@@ -1,0 +1,117 @@
+"""What a refinement has still to do: sub-segments to split, first come first served; bad triangles, shortest edge first.
+
+Bad triangles wait in *buckets*, by the power of two (and the quarter of it) of their shortest edge squared. A
+bucket is a list threaded through ``queue``; so a triangle that vanishes leaves it at once, and nothing in it is
+ever stale. Within a bucket: first in, first out.
+"""
+
+from __future__ import annotations
+
+import math
+
+from fem_mesh.kernel import index, kernel
+
+# What `state` holds, beside the slots of workspace.py
+BEGUN = 12  # whether everything has been judged once
+BAD = 13  # bad triangles waiting
+LOWEST = 14  # no bucket below this one holds any
+HEAD = 15  # where the sub-segments waiting begin
+WAITING = 16  # how many of them there are
+ADDED = 17  # points added, and not removed
+INSERTIONS = 18  # points ever added
+MOST = 19  # points that may be added
+FREE_VERTEX = 20  # the first vertex slot to use again, or 0
+FREE_TRIANGLE = 21  # the first triangle slot to use again, plus 1, or 0
+UNSIZED = 22  # whether triangles wait for their size
+FRESH = 23  # triangles in `cavity` that were given one, to be judged
+LENS = 24  # whether encroachment is by lenses
+OFFCENTER = 25  # whether Steiner points are off-centers
+LABELLED = 26  # whether triangles have bounds of their own
+GIVEN = 27  # whether `limits` holds the next split point, on a curve
+OFF_CURVE = 28  # split points that had to stay on a chord
+BEYOND = 29  # the half-edge of a split sub-segment whose triangle stays, plus 1, or 0
+
+NONE = -1
+STEPS = 4  # buckets to a factor of 2 in the square of a length
+LOWEST_POWER = -300  # squares of lengths between doubles of 2^-142 .. 2^201 stay above and below
+BUCKETS = STEPS * 720
+AFTER, BEFORE, BUCKET = 0, 1, 2  # the columns of `queue`, one row a triangle
+FIRST, LAST = 0, 1  # the columns of `bucket`
+NUMBER, STATUS = 0, 1  # the columns of `waiting`: a ring of sub-segments; and the status of each sub-segment
+IDLE, QUEUED, FROZEN = 0, 1, 2  # waits not, waits, cannot be split
+
+
+@kernel
+def bucket_of(square):
+    """The bucket of a triangle whose shortest edge has this squared length."""
+    fraction, power = math.frexp(square)  # exact: square = fraction x 2^power, fraction in [1/2, 1)
+    return (power - LOWEST_POWER) * STEPS + int((2.0 * fraction - 1.0) * STEPS)
+
+
+@kernel
+def push_triangle(t, b, queue, bucket, state):
+    """Put triangle ``t`` at the end of bucket ``b``."""
+    end = bucket[b, LAST]
+    queue[t, AFTER], queue[t, BEFORE], queue[t, BUCKET] = NONE, end, b
+    if end == NONE:
+        bucket[b, FIRST] = t
+    else:
+        queue[index(end), AFTER] = t
+    bucket[b, LAST] = t
+    state[BAD] += 1
+    if b < state[LOWEST]:
+        state[LOWEST] = b
+
+
+@kernel
+def drop_triangle(t, queue, bucket, state):
+    """Take triangle ``t`` out of its bucket, if it is in one."""
+    b = queue[t, BUCKET]
+    if b == NONE:
+        return
+    queue[t, BUCKET] = NONE
+    state[BAD] -= 1
+    after, before = queue[t, AFTER], queue[t, BEFORE]
+    if before == NONE:
+        bucket[b, FIRST] = after
+    else:
+        queue[index(before), AFTER] = after
+    if after == NONE:
+        bucket[b, LAST] = before
+    else:
+        queue[index(after), BEFORE] = before
+
+
+@kernel
+def pop_triangle(queue, bucket, state):
+    """Take out the bad triangle with the shortest edge. There is one, so the search upwards ends."""
+    while bucket[state[LOWEST], FIRST] == NONE:
+        state[LOWEST] += 1
+    t = index(bucket[state[LOWEST], FIRST])
+    drop_triangle(t, queue, bucket, state)
+    return t
+
+
+@kernel
+def push_segment(s, waiting, state):
+    """Let sub-segment ``s`` wait to be split, unless it does or cannot be. Returns whether it waits."""
+    if waiting[s, STATUS] == IDLE:
+        waiting[s, STATUS] = QUEUED
+        end = state[HEAD] + state[WAITING]
+        waiting[end if end < len(waiting) else end - len(waiting), NUMBER] = s
+        state[WAITING] += 1
+    return waiting[s, STATUS] == QUEUED
+
+
+@kernel
+def first_segment(waiting, state):
+    """The sub-segment that has waited longest."""
+    return index(waiting[state[HEAD], NUMBER])
+
+
+@kernel
+def pop_segment(status, waiting, state):
+    """Take it out; what becomes of it is its new ``status``."""
+    waiting[waiting[state[HEAD], NUMBER], STATUS] = status
+    state[HEAD] = state[HEAD] + 1 if state[HEAD] + 1 < len(waiting) else 0
+    state[WAITING] -= 1
