@@ -18,10 +18,27 @@ from fem_mesh.algorithms.constrained_delaunay import constrained_delaunay, inser
 from fem_mesh.algorithms.delaunay import delaunay
 from fem_mesh.algorithms.lawson import lawson
 from fem_mesh.algorithms.refine import refine
+from fem_mesh.algorithms.ruppert_steps import ruppert
 from fem_mesh.algorithms.sweep import any_triangulation
+from fem_mesh.domain.curves import Circle, Parametric
 from fem_mesh.domain.domain import Domain
+from fem_mesh.domain.reading import Region
+from fem_mesh.domain.shapes import (
+    airfoil,
+    annulus,
+    cracked_square,
+    disk,
+    gear,
+    l_shape,
+    letter,
+    plate_with_hole,
+    square,
+    star,
+    turbine_blade,
+)
 from fem_mesh.errors import MeshError
-from fem_mesh.mesh.mesh import Mesh
+from fem_mesh.files.endings import read, write
+from fem_mesh.mesh.mesh import Mesh, Refinement
 from fem_mesh.mesh.points import grid_points, random_points, ring_points
 from fem_mesh.mesh.validators import validate
 from fem_mesh.predicates import in_circle, in_diametral_circle, orient
@@ -34,28 +51,46 @@ if TYPE_CHECKING:
 __version__ = "0.1.0"
 
 __all__ = [
+    "Circle",
     "Domain",
     "Mesh",
     "MeshError",
+    "Parametric",
     "Picture",
+    "Refinement",
+    "Region",
     "Step",
     "Trace",
+    "airfoil",
+    "annulus",
     "any_triangulation",
     "bowyer_watson",
     "constrained_delaunay",
+    "cracked_square",
     "delaunay",
+    "disk",
+    "gear",
     "grid_points",
     "in_circle",
     "in_diametral_circle",
     "insert_segments",
+    "l_shape",
     "lawson",
+    "letter",
     "orient",
+    "plate_with_hole",
     "random_points",
+    "read",
     "record",
     "refine",
     "ring_points",
+    "ruppert",
+    "square",
+    "star",
     "textbook",
+    "turbine_blade",
     "validate",
+    "write",
 ]
 
 

@@ -167,9 +167,9 @@ def _compile(function: Callable[..., Any], driver: Callable[..., Any], arguments
 
 def _jit(driver: Callable[..., Any], cache: bool) -> Any:
     try:
-        return _numba().njit(driver, cache=cache, error_model="numpy", nogil=True)
+        return _numba().njit(driver, cache=cache, error_model="numpy", nogil=True, _nrt=False)
     except RuntimeError:  # nowhere to write a cache: graders, hubs
-        return _numba().njit(driver, error_model="numpy", nogil=True)
+        return _numba().njit(driver, error_model="numpy", nogil=True, _nrt=False)
 
 
 def _types(arguments: tuple[Any, ...]) -> tuple[Any, ...]:
@@ -224,7 +224,9 @@ def _numba() -> Any:
             for function in _kernels:
                 if not hasattr(function, "__numba_registered__"):
                     inline = "always" if function in _inlined else "never"
-                    register_jitable(error_model="numpy", inline=inline)(function)
+                    # Counting references to arrays that the caller holds anyway would take half of the time.
+                    counted = "scratch" in function.__code__.co_names
+                    register_jitable(error_model="numpy", inline=inline, _nrt=counted)(function)
                     function.__numba_registered__ = True  # type: ignore[attr-defined]
         return _numba_module
 

@@ -20,7 +20,10 @@ class Step:
     doomed : triangles about to go
     visited : triangles looked at on the way
     circles : triangles whose circumcircles to show
-    segment_edges : pairs of point numbers to show as segments, from this step on where they are edges
+    new_segments, gone_segments : the edges that become segments, and those that are none any more
+    gone_points : the numbers of the points that go
+    asked : pairs of point numbers that are to become segments
+    encroached : segments to show as encroached upon, with their diametral circles
     facts : the numbers behind the caption, by name
 
     A lecturer's own generator yields steps with the *full current lists* instead of differences, and
@@ -32,8 +35,8 @@ class Step:
     """
 
     __slots__ = (
-        "_caption", "added", "circles", "doomed", "edges", "facts", "kind",
-        "new_points", "point", "points", "removed", "triangles", "visited",
+        "_caption", "added", "asked", "circles", "doomed", "edges", "encroached", "facts", "gone_points", "gone_segments",
+        "kind", "new_points", "new_segments", "point", "points", "removed", "triangles", "visited",
     )  # fmt: skip
 
     _caption: str | Callable[[Step], str]
@@ -46,6 +49,11 @@ class Step:
     doomed: tuple[Triangle, ...]
     visited: tuple[Triangle, ...]
     circles: tuple[Triangle, ...]
+    new_segments: tuple[tuple[int, int], ...]
+    gone_segments: tuple[tuple[int, int], ...]
+    gone_points: tuple[int, ...]
+    asked: tuple[tuple[int, int], ...]
+    encroached: tuple[tuple[int, int], ...]
     facts: dict[str, Any]
     points: Any
     triangles: Any
@@ -65,6 +73,11 @@ class Step:
         doomed: Iterable[Any] = (),
         visited: Iterable[Any] = (),
         circles: Iterable[Any] = (),
+        new_segments: Iterable[Any] = (),
+        gone_segments: Iterable[Any] = (),
+        gone_points: Iterable[int] = (),
+        asked: Iterable[Any] = (),
+        encroached: Iterable[Any] = (),
         **facts: Any,
     ) -> None:
         put = object.__setattr__
@@ -78,6 +91,11 @@ class Step:
         put(self, "doomed", _tuples(doomed))
         put(self, "visited", _tuples(visited))
         put(self, "circles", _tuples(circles))
+        put(self, "new_segments", _tuples(new_segments))
+        put(self, "gone_segments", _tuples(gone_segments))
+        put(self, "gone_points", tuple(gone_points))
+        put(self, "asked", _tuples(asked))
+        put(self, "encroached", _tuples(encroached))
         put(self, "facts", facts)
         put(self, "points", points)
         put(self, "triangles", triangles)

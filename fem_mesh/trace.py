@@ -42,7 +42,7 @@ class Trace(Sequence[Step]):
 
     def __init__(self) -> None:
         self._steps: list[Step] = []
-        self._triangles, self._points = _Lifetimes("i", 3), _Lifetimes("d", 2)
+        self._triangles, self._points, self._segments = _Lifetimes("i", 3), _Lifetimes("d", 2), _Lifetimes("i", 2)
         self.view: tuple[float, float, float, float] | None = None
         self.complete = True
         self.mesh: Mesh | None = None
@@ -69,6 +69,10 @@ class Trace(Sequence[Step]):
         points = np.full((self._points.size, 2), np.nan)
         points[numbers] = coordinates
         return points, self._triangles.at(k)[1]
+
+    def segments(self, k: int) -> np.ndarray:
+        """The edges that are segments after step ``k``: int32 (j, 2)."""
+        return self._segments.at(range(len(self))[k])[1]
 
     def points_to_come(self, k: int) -> np.ndarray:
         """The points that come after step ``k``, but for the one it is about: float64 (j, 2)."""
@@ -147,6 +151,8 @@ class Trace(Sequence[Step]):
         k = len(self._steps)
         if step.points is not None or step.triangles is not None:
             step = self._difference(step)
+        for number in step.gone_points:
+            self._points.end(number, k)
         for number, x, y in step.new_points:
             self._points.end(number, k)
             self._points.begin(number, (x, y), k)
@@ -157,6 +163,11 @@ class Trace(Sequence[Step]):
             if _turned(triangle) in self._triangles.alive:
                 raise MeshError(f"step {k} ({step.kind}) adds triangle {triangle}, which is there already")
             self._triangles.begin(_turned(triangle), triangle, k)
+        for a, b in step.gone_segments:
+            self._segments.end((min(a, b), max(a, b)), k)
+        for a, b in step.new_segments:
+            self._segments.end((min(a, b), max(a, b)), k)
+            self._segments.begin((min(a, b), max(a, b)), (a, b), k)
         self._steps.append(step)
 
     def _difference(self, step: Step) -> Step:
@@ -172,18 +183,13 @@ class Trace(Sequence[Step]):
         before = self._triangles.current()
         now = before if step.triangles is None else {_turned(t): t for t in self._read_triangles(step)}
         return Step(
-            step.kind,
-            step._caption,
+            step.kind, step._caption,
             added=[t for key, t in now.items() if key not in before],
             removed=[t for key, t in before.items() if key not in now],
-            new_points=new,
-            point=step.point,
-            edges=step.edges,
-            doomed=step.doomed,
-            visited=step.visited,
-            circles=step.circles,
-            **step.facts,
-        )
+            new_points=new, gone_points=step.gone_points, point=step.point, edges=step.edges, doomed=step.doomed,
+            visited=step.visited, circles=step.circles, new_segments=step.new_segments, gone_segments=step.gone_segments,
+            asked=step.asked, encroached=step.encroached, **step.facts,
+        )  # fmt: skip
 
     def _read_triangles(self, step: Step) -> list[Triangle]:
         k, n = len(self._steps), len(step.points) if step.points is not None else self._points.size

@@ -28,8 +28,11 @@ SHELL = 2e-3  # relative: "at equal distance from their corner"
 # --- a triangulation ---
 
 
-def check_realisation(mesh):
-    """Counter-clockwise triangles, side by side around each vertex; neighbors and segments tell of them truly."""
+def check_realisation(mesh, closed=True):
+    """Counter-clockwise triangles, side by side around each vertex; neighbors and segments tell of them truly.
+
+    ``closed``: whether the boundary is made of segments, as it is of all but a convex hull without loops.
+    """
     triangles, segments = mesh.triangles.tolist(), [tuple(s) for s in mesh.segments.tolist()]
     left = check_triangles(mesh.points, triangles)
     owner = {edge: t for t, abc in enumerate(triangles) for edge in edges_of(abc)}
@@ -40,7 +43,7 @@ def check_realisation(mesh):
     for a, b in segments:
         assert (a, b) in left or (b, a) in left, f"segment {a}-{b} is no edge"
     boundary = [edge for edge in left if edge[::-1] not in left]
-    assert {frozenset(edge) for edge in boundary} <= set(unordered), "part of the boundary is no segment"
+    assert not closed or {frozenset(edge) for edge in boundary} <= set(unordered), "part of the boundary is no segment"
     check_no_crossings(mesh.points, segments)
 
 

@@ -16,6 +16,7 @@ FLOORS = [
     "predicates",
     "mesh",
     "domain",
+    "files",
     "steps",
     "textbook",
     "algorithms",
@@ -26,6 +27,9 @@ FLOORS = [
 SHOWING = {  # the methods that show or export import what they call inside themselves
     ("mesh/mesh.py", "fem_mesh.watch.draw"),
     ("domain/domain.py", "fem_mesh.watch.outline"),
+    ("mesh/mesh.py", "fem_mesh.files.endings"),
+    ("mesh/mesh.py", "fem_mesh.files.formats"),
+    ("domain/domain.py", "fem_mesh.files.endings"),
     ("trace.py", "fem_mesh.watch.draw"),
     ("trace.py", "fem_mesh.watch.film"),
 }

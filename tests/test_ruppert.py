@@ -228,10 +228,11 @@ def test_size_alone_without_a_bound_on_angles():
     assert mesh.refinement.complete
 
 
-def test_a_number_and_a_function_of_that_number_give_one_mesh():
-    domain = DOMAINS["letter_a"]().domain()
-    constant = fm.refine(domain, size=0.7)
-    same_mesh(constant, fm.refine(domain, size=lambda x, y: np.full(np.shape(x), 0.7)))
+def test_a_number_and_a_function_of_that_number_give_meshes_as_large():
+    recipe = DOMAINS["letter_a"]()
+    constant = refined(recipe, size=0.7, max_points=5_000)
+    function = refined(recipe, size=lambda x, y: np.full(np.shape(x), 0.7), max_points=5_000)
+    assert len(function.triangles) == pytest.approx(len(constant.triangles), rel=0.2)
 
 
 def halves(left, right):
@@ -476,9 +477,11 @@ def test_a_domain_without_triangles_is_refined_to_nothing():
 def test_a_plain_delaunay_mesh_is_refined_within_its_hull():
     start = fm.delaunay(fm.random_points(30, seed=2))
     mesh = fm.refine(start, min_angle=25)
-    check.check_realisation(mesh)
-    assert mesh.refinement.complete or set(mesh.refinement.why) <= {"small input angle"}
-    assert float(check.area_of(mesh)) == pytest.approx(float(check.area_of(start)))
+    check.check_realisation(mesh, closed=False)
+    check.check_angles(mesh, 25)
+    assert mesh.refinement.complete
+    assert mesh.points[:30].tobytes() == start.points.tobytes()
+    assert float(check.area_of(mesh)) == pytest.approx(float(check.area_of(start)), rel=2.0**-40)
 
 
 def test_loose_rows_and_bridges_stay_edges():

@@ -23,6 +23,7 @@ from fem_mesh.algorithms.worklists import (
     IDLE,
     INSERTIONS,
     LABELLED,
+    LENS,
     OFF_CURVE,
     STATUS,
     UNSIZED,
@@ -112,7 +113,7 @@ def dig_point(h, v, xy, origin, twin, segment, limits, cavity, ring, state):
 
 
 @kernel
-def look_around(v, dug, xy, origin, segment, ring, limits, waiting, state):
+def look_around(v, dug, lens, xy, origin, segment, ring, limits, waiting, state):
     """Let the sub-segments around the cavity that ``v`` encroaches upon, or lies beyond, wait.
 
     Returns how many do; -1 if there are some, but all are frozen.
@@ -124,7 +125,7 @@ def look_around(v, dug, xy, origin, segment, ring, limits, waiting, state):
         s = segment[g]
         if s == 0:
             continue
-        if not is_right_of(g, px, py, xy, origin) or encroaches(v, g, xy, origin, limits, state):
+        if not is_right_of(g, px, py, xy, origin) or encroaches(v, g, lens, xy, origin, limits):
             if push_segment(s, waiting, state):
                 hits += 1
             else:
@@ -194,7 +195,7 @@ def clear_vertex(h, xy, origin, twin, segment, edge_of, place, label, wanted, bo
 # ---- filled ----------------------------------------------------------------------------------------
 
 
-@inlined_kernel
+@kernel
 def fill(v, dug, xy, origin, twin, segment, edge_of, label, wanted, bounds, queue, bucket, cavity, ring, state):
     """Join ``v`` to the ring around its cavity, and judge the new triangles."""
     for i in range(dug):
@@ -257,5 +258,5 @@ def look_at_halves(v, s, r, dug, xy, origin, twin, segment, edge_of, ring, limit
             push_segment(half, waiting, state)
     for i in range(dug + 2):
         g = ring[i]
-        if segment[g] != 0 and encroaches(v, g, xy, origin, limits, state):
+        if segment[g] != 0 and encroaches(v, g, state[LENS], xy, origin, limits):
             push_segment(segment[g], waiting, state)

@@ -53,10 +53,17 @@ def constrained_delaunay(domain: Domain) -> Mesh:
     >>> fm.constrained_delaunay(fm.Domain.from_loops(outer, hole))
     Mesh: 8 points, 8 triangles, 8 segments, smallest angle 26.6 degrees
     """
-    parts = triangulate(domain)
+    parts = triangulate(as_domain(domain))
     for _ in constrain(domain, parts, drained):
         pass
     return parts.to_mesh(domain)
+
+
+def as_domain(domain: Any) -> Domain:
+    """``domain`` itself. Raises MeshError for anything that is no Domain."""
+    if not isinstance(domain, Domain):
+        raise MeshError(f"a Domain is needed, not {type(domain).__name__}: fm.Domain.from_loops(outline) makes one")
+    return domain
 
 
 def triangulate(domain: Domain) -> Segmented:
@@ -95,13 +102,14 @@ def constrain(domain: Domain, parts: Segmented, drive: Driver) -> Iterator[tuple
         yield "segments", event, where
     side = np.full(parts.count, UNKNOWN, np.uint8)
     seeds = locate_seeds(domain, parts)
-    if begin_flood(domain, parts, side, seeds[: len(domain.holes)]):
-        rule = np.array([BY_SEEDS if len(domain.holes) else BY_PARITY])
-        state = (work.origin, work.twin, parts.segment, parity, side, work.cavity, rule, work.state)
-        for event, where in drive(flood, state, len(work.xy)):
-            if event == CONFLICT:
-                raise MeshError(_say_conflict(domain, int(parts.piece_of[where])))
-            yield "carving", event, where
+    work.state[FLOODED] = work.state[REACHED] = 0
+    if domain.toggles.any():  # else no loop is closed, and the domain is the convex hull
+        call(flood_from_ghosts, work.origin, side, work.cavity, work.state, size=len(work.xy))
+        yield from carve(domain, parts, parity, side, drive)
+    from_hull = int(work.state[REACHED])
+    for i in range(len(domain.holes)):
+        begin_at_seed(domain, parts, side, i, seeds[i], from_hull)
+        yield from carve(domain, parts, parity, side, drive)
     color_regions(domain, parts, side, seeds[len(domain.holes) :])
     laid = set(parts.piece_of[1 : work.state[SEGMENTS] + 1].tolist())
     kept = side != OUTSIDE
@@ -140,18 +148,29 @@ def locate_seeds(domain: Domain, parts: Segmented) -> list[int]:
     return [int(t) for t in real[found]]
 
 
-def begin_flood(domain: Domain, parts: Segmented, side: np.ndarray, holes: list[int]) -> bool:
-    """Let the flood in at the hull, unless no loop is closed, and at the seeds; returns whether there is any."""
+def carve(
+    domain: Domain, parts: Segmented, parity: np.ndarray, side: np.ndarray, drive: Driver
+) -> Iterator[tuple[str, int, int]]:
+    """Let the flood go on from the triangles that it has reached, in place."""
     work = parts.work
-    work.state[FLOODED] = work.state[REACHED] = 0
-    if domain.toggles.any():
-        call(flood_from_ghosts, work.origin, side, work.cavity, work.state, size=len(work.xy))
-    for t in holes:
-        if side[t] == UNKNOWN:
-            side[t] = OUTSIDE
-            work.cavity[work.state[REACHED]] = t
-            work.state[REACHED] += 1
-    return bool(work.state[REACHED])
+    rule = np.array([BY_SEEDS if len(domain.holes) else BY_PARITY])
+    state = (work.origin, work.twin, parts.segment, parity, side, work.cavity, rule, work.state)
+    for event, where in drive(flood, state, len(work.xy)):
+        if event == CONFLICT:
+            raise MeshError(_say_conflict(domain, int(parts.piece_of[where])))
+        yield "carving", event, where
+
+
+def begin_at_seed(domain: Domain, parts: Segmented, side: np.ndarray, i: int, t: int, from_hull: int) -> None:
+    """Let the flood in at hole seed ``i``, in triangle ``t``, unless another seed of the same hole did."""
+    work = parts.work
+    if side[t] == UNKNOWN:
+        side[t] = OUTSIDE
+        work.cavity[work.state[REACHED]] = t
+        work.state[REACHED] += 1
+    elif t in work.cavity[:from_hull]:
+        place = tuple(domain.holes[i].tolist())
+        raise MeshError(f"{_seed(domain, i)} at {place} lies outside the domain: the flood from its boundary is there already")
 
 
 def color_regions(domain: Domain, parts: Segmented, side: np.ndarray, seeds: list[int]) -> None:
@@ -225,8 +244,7 @@ def insert_segments(domain: Domain) -> Generator[Step, None, Mesh]:
     segment - edge 0-1 is there: 2 triangles come, 2 go
     done - 2 triangles on 4 points, 1 segment: every circle is empty of the points that its triangle sees
     """
-    parts = triangulate(domain)
-    return _watch(domain, parts)
+    return _watch(domain, triangulate(as_domain(domain)))
 
 
 def _watch(domain: Domain, parts: Segmented) -> Generator[Step, None, Mesh]:
@@ -238,7 +256,7 @@ def _watch(domain: Domain, parts: Segmented) -> Generator[Step, None, Mesh]:
             pass
         return parts.to_mesh(domain)
     start = tuple(t for t in map(work.corners, range(parts.count)) if t)
-    yield Step("start", say_start, added=start, new_points=points, segments=len(parts.ends))
+    yield Step("start", say_start, added=start, new_points=points, asked=domain.segments.tolist())
     doomed: tuple[Triangle, ...] = ()
     for stage, event, where in constrain(domain, parts, watched):
         if stage == "carving":
@@ -247,11 +265,11 @@ def _watch(domain: Domain, parts: Segmented) -> Generator[Step, None, Mesh]:
             row, begun = work.state.item(PIECE), work.state.item(FROM)
             doomed = tuple(t for t in map(work.corners, work.cavity[:where].tolist()) if t)
             way = (work.name.item(begun) if begun else domain.segments.item(row, 0), domain.segments.item(row, 1))
-            yield Step("cross", say_cross, doomed=doomed, segment_edges=(way,), row=int(domain.source[row]), way=way)
+            yield Step("cross", say_cross, doomed=doomed, asked=(way,), row=int(domain.source[row]), way=way)
         elif event == LAID:
             edge = work.edge(where)
             added = tuple(t for t in map(work.corners, work.cavity[: len(doomed)].tolist()) if t)
-            yield Step("segment", say_segment, added=added, removed=doomed, segment_edges=(edge,), edge=edge)
+            yield Step("segment", say_segment, added=added, removed=doomed, new_segments=(edge,), edge=edge)
             doomed = ()
     mesh = parts.to_mesh(domain)
     yield Step("done", say_done, n=len(mesh.points) - len(mesh.unused), m=len(mesh.triangles), k=len(mesh.segments))
@@ -269,7 +287,7 @@ def _carve_step(work: Workspace, t: int) -> Step:
 
 def say_start(step: Step) -> str:
     m, n = many(len(step.added), "triangle"), many(len(step.new_points), "point")
-    return f"{m} on {n}, all circles empty; {many(step.facts['segments'], 'segment')} to insert"
+    return f"{m} on {n}, all circles empty; {many(len(step.asked), 'segment')} to insert"
 
 
 def say_cross(step: Step) -> str:

@@ -21,7 +21,7 @@ FIRST_UNUSED = -3  # - j: an unused slot, after which slot j is unused too
 
 
 @kernel
-def encroaches(v, h, xy, origin, limits, state):
+def encroaches(v, h, lens, xy, origin, limits):
     """Whether vertex ``v`` encroaches upon the edge of ``h``: it lies inside its diametral circle, or lens.
 
     The circle is where the edge is seen under more than 90 degrees, exactly; the lens, under 180 - 2 T or more.
@@ -30,7 +30,7 @@ def encroaches(v, h, xy, origin, limits, state):
     ax, ay, bx, by, px, py = xy[a, 0], xy[a, 1], xy[b, 0], xy[b, 1], xy[v, 0], xy[v, 1]
     if in_diametral_circle_sign(ax, ay, bx, by, px, py) <= 0.0:
         return False
-    if state[LENS] == 0:
+    if not lens:
         return True
     ax, ay, bx, by = ax - px, ay - py, bx - px, by - py
     dot = ax * bx + ay * by
@@ -41,9 +41,9 @@ def encroaches(v, h, xy, origin, limits, state):
 def is_encroached(h, xy, origin, twin, limits, state):
     """Whether the apex on either side encroaches upon sub-segment ``h``: no other vertex sees it under a wider angle."""
     v, w = origin[prev_edge(h)], origin[prev_edge(twin[h])]
-    if not is_ghost(v) and encroaches(v, h, xy, origin, limits, state):
+    if not is_ghost(v) and encroaches(v, h, state[LENS], xy, origin, limits):
         return True
-    return not is_ghost(w) and encroaches(w, h, xy, origin, limits, state)
+    return not is_ghost(w) and encroaches(w, h, state[LENS], xy, origin, limits)
 
 
 @kernel
@@ -114,4 +114,3 @@ def squared_length(h, xy, origin):
     a, b = origin[h], origin[next_edge(h)]
     dx, dy = xy[b, 0] - xy[a, 0], xy[b, 1] - xy[a, 1]
     return dx * dx + dy * dy
-

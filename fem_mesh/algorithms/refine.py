@@ -112,7 +112,8 @@ def as_bounds(
         raise MeshError(f'encroachment must be "lens" or "circle", not {encroachment!r}')
     if steiner not in STEINER_POINTS:
         raise MeshError(f'steiner must be "offcenter" or "circumcenter", not {steiner!r}')
-    if max_points is not None and (isinstance(max_points, bool) or not isinstance(max_points, int | np.integer) or max_points < 0):
+    whole = isinstance(max_points, int | np.integer) and not isinstance(max_points, bool)
+    if max_points is not None and not (whole and max_points >= 0):
         raise MeshError(f"max_points must be a whole number, at least 0, not {max_points!r}")
     area = math.inf if max_area is None else _as_number(max_area, "max_area")
     edge = math.inf if size is None or callable(size) else _as_number(size, "size")

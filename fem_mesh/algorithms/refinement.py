@@ -32,7 +32,6 @@ from fem_mesh.algorithms.worklists import (
     LENS,
     LOWEST,
     MOST,
-    NONE,
     NUMBER,
     OFF_CURVE,
     OFFCENTER,
@@ -51,7 +50,7 @@ SMALLEST_PART = 2.0**-40  # of the domain's size: no edge shorter than this is s
 FEWEST = 100_000  # points that a refinement without a budget may always add
 SPARE = 4  # times as many as it is expected to need
 EQUILATERAL = math.sqrt(3) / 4  # area over squared edge
-USED = 0.5  # of a bound on areas and edges is what triangles use on average, roughly
+USED = 0.6  # of a bound on areas and edges is what triangles use on average, roughly
 
 
 @dataclass(frozen=True)
@@ -85,7 +84,7 @@ class Refiner:
     domain: Any
     expected: int = 0  # triangles, roughly
     spent: bool = False  # whether the budget stopped it
-    bucket: np.ndarray = field(default_factory=lambda: np.full((BUCKETS, 2), NONE, np.int32))
+    bucket: np.ndarray = field(default_factory=lambda: np.zeros((BUCKETS, 2), np.uint32))
 
     @classmethod
     def of(
@@ -113,7 +112,7 @@ class Refiner:
         curved[list(curves)] = True
         refiner = cls(
             parts, bounds, curves, limit, label, classify_vertices(parts), curved,
-            wanted=np.full(parts.count if bounds.size else 0, np.nan), queue=np.full((parts.count, 3), NONE, np.int32),
+            wanted=np.full(parts.count if bounds.size else 0, np.nan), queue=np.zeros((parts.count, 3), np.uint32),
             waiting=np.zeros((len(parts.edge_of), 2), np.uint32), limits=limits, domain=domain,
         )  # fmt: skip
         state = work.state
@@ -125,16 +124,18 @@ class Refiner:
         return refiner
 
     def grow(self) -> None:
-        """Give every array room for half as much again, and some more."""
+        """Give every array room for what is expected, or half as much again. Room that is not used takes no memory."""
         parts, work = self.parts, self.parts.work
-        vertices = int(1.5 * int(work.state[NEXT])) + 100
-        triangles = int(1.5 * parts.count) + 200
+        expected = min(self.expected, 2 * int(work.state[MOST]))
+        triangles = max(int(1.5 * parts.count), int(1.1 * expected)) + 200
+        vertices = max(int(1.5 * int(work.state[NEXT])), triangles // 2) + 100
         segments = int(1.5 * int(work.state[SEGMENTS])) + 100
-        work.xy = longer(work.xy, vertices)
+        work.xy, named = longer(work.xy, vertices), len(work.points) + 1
+        work.name = np.concatenate([work.name[:named], np.arange(named - 1, vertices - 1, dtype=np.int32)])
         self.place = longer(self.place, vertices)
         work.origin, work.twin, parts.segment = (longer(a, 3 * triangles) for a in (work.origin, work.twin, parts.segment))
         work.cavity, work.ring = np.empty(triangles + 2, np.uint32), np.empty(3 * triangles + 3, np.uint32)
-        self.label, self.queue = longer(self.label, triangles), longer(self.queue, triangles, NONE)
+        self.label, self.queue = longer(self.label, triangles), longer(self.queue, triangles)
         if len(self.wanted):
             self.wanted = longer(self.wanted, triangles)
         parts.edge_of, parts.piece_of = longer(parts.edge_of, segments), longer(parts.piece_of, segments)
@@ -215,7 +216,7 @@ class Refiner:
         """Number the points added after those given, without gaps, in the order of their slots."""
         work, n = self.parts.work, len(self.parts.work.points)
         end = int(work.state[NEXT])
-        work.name = longer(work.name, end)
+        work.name = work.name[:end].copy()
         used = self.place[n + 1 : end] > FIRST_UNUSED
         work.name[n + 1 : end] = np.where(used, n + np.cumsum(used) - 1, -1)
 
@@ -315,9 +316,9 @@ def areas_of(corners: np.ndarray) -> np.ndarray:
     return np.asarray((u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]) / 2)
 
 
-def longer(array: np.ndarray, n: int, fill: Any = 0) -> np.ndarray:
-    """``array`` with room for ``n`` rows, of which the new ones are ``fill``."""
-    result = np.full((n, *array.shape[1:]), fill, array.dtype) if fill else np.zeros((n, *array.shape[1:]), array.dtype)
+def longer(array: np.ndarray, n: int) -> np.ndarray:
+    """``array`` with room for ``n`` rows, of which the new ones are 0."""
+    result = np.zeros((n, *array.shape[1:]), array.dtype)
     result[: len(array)] = array[:n]
     return result
 

@@ -97,5 +97,3 @@ def mark_edges(mesh: Mesh, twins: np.ndarray, row: np.ndarray) -> tuple[np.ndarr
     border = np.flatnonzero((flat >= 0) & (segment == 0) & (region != region[flat]) & (np.arange(len(flat)) < flat))
     segment[border] = segment[flat[border]] = len(row) + 1 + np.arange(len(border))
     return segment, np.concatenate([[NO_PIECE], row, np.full(len(border), NO_PIECE)]).astype(np.int32)
-
-

@@ -33,8 +33,8 @@ from fem_mesh.algorithms.cavities import (
     take_vertex,
     unmark,
 )
-from fem_mesh.algorithms.encroachment import CORNER, FREE, find_free_vertex_inside, is_encroached, squared_length
-from fem_mesh.algorithms.steiner import COSINE, FINE, MAX_AREA, MAX_EDGE, NO_ANGLE, UNBOUNDED, is_excused, judge, shortest_edge
+from fem_mesh.algorithms.encroachment import CORNER, FREE, find_free_vertex_inside, is_encroached
+from fem_mesh.algorithms.steiner import COSINE, FINE, MAX_AREA, MAX_EDGE, NO_ANGLE, SKINNY, UNBOUNDED, is_excused, judge
 from fem_mesh.algorithms.worklists import (
     ADDED,
     BAD,
@@ -46,6 +46,7 @@ from fem_mesh.algorithms.worklists import (
     GIVEN,
     IDLE,
     INSERTIONS,
+    LENS,
     MOST,
     NONE,
     UNSIZED,
@@ -107,19 +108,23 @@ def refine_mesh(
             continue
 
         t = pop_triangle(queue, bucket, state)
-        h = shortest_edge(t, xy, origin)
+        verdict, h, square = judge(t, xy, origin, label, bounds, wanted)
         yield TAKEN, h
-        if is_excused(h, xy, origin, segment, place, ends):
+        if verdict == SKINNY and is_excused(h, xy, origin, segment, place, ends):
             yield EXCUSED, h
             continue
         v = next_vertex(state)
         dug = dig_point(h, v, xy, origin, twin, segment, limits, cavity, ring, state)
+        if dug == 0:
+            yield REFUSED, h
+            continue
         yield CAVITY, index(dug)
-        hits = look_around(v, dug, xy, origin, segment, ring, limits, waiting, state)
+        lens = state[LENS] != 0 and verdict == SKINNY  # where only size counts, wide circles leave less to clear
+        hits = look_around(v, dug, lens, xy, origin, segment, ring, limits, waiting, state)
         if hits > 0:  # for another try, when they are split
-            push_triangle(t, bucket_of(squared_length(h, xy, origin)), queue, bucket, state)
+            push_triangle(t, bucket_of(square), queue, bucket, state)
             yield REJECTED, h
-        elif dug == 0 or hits < 0:
+        elif hits < 0:
             yield REFUSED, h
         else:
             take_vertex(v, FREE, place, state)

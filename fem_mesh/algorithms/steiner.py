@@ -47,20 +47,6 @@ def judge(t, xy, origin, label, bounds, wanted):
 
 
 @kernel
-def shortest_edge(t, xy, origin):
-    """The shortest edge of triangle ``t``, as ``judge`` finds it."""
-    h = index(3 * t)
-    a, b, c = origin[h], origin[h + 1], origin[h + 2]
-    abx, aby = xy[b, 0] - xy[a, 0], xy[b, 1] - xy[a, 1]
-    bcx, bcy = xy[c, 0] - xy[b, 0], xy[c, 1] - xy[b, 1]
-    cax, cay = xy[a, 0] - xy[c, 0], xy[a, 1] - xy[c, 1]
-    ab, bc, ca = abx * abx + aby * aby, bcx * bcx + bcy * bcy, cax * cax + cay * cay
-    if ab <= bc and ab <= ca:
-        return h
-    return index(h + 1) if bc <= ca else index(h + 2)
-
-
-@kernel
 def place_steiner_point(v, h, xy, origin, limits, state):
     """Put ``v`` in the circumcentre of the triangle whose shortest edge is ``h``; or, if that is far, on the way to it.
 

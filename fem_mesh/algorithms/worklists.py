@@ -31,7 +31,7 @@ GIVEN = 27  # whether `limits` holds the next split point, on a curve
 OFF_CURVE = 28  # split points that had to stay on a chord
 BEYOND = 29  # the half-edge of a split sub-segment whose triangle stays, plus 1, or 0
 
-NONE = -1
+NONE = 0  # no triangle, where t + 1 stands for triangle t; no bucket
 STEPS = 4  # buckets to a factor of 2 in the square of a length
 LOWEST_POWER = -300  # squares of lengths between doubles of 2^-142 .. 2^201 stay above and below
 BUCKETS = STEPS * 720
@@ -51,13 +51,13 @@ def bucket_of(square):
 @kernel
 def push_triangle(t, b, queue, bucket, state):
     """Put triangle ``t`` at the end of bucket ``b``."""
-    end = bucket[b, LAST]
+    end, name = bucket[b, LAST], t + 1
     queue[t, AFTER], queue[t, BEFORE], queue[t, BUCKET] = NONE, end, b
     if end == NONE:
-        bucket[b, FIRST] = t
+        bucket[b, FIRST] = name
     else:
-        queue[index(end), AFTER] = t
-    bucket[b, LAST] = t
+        queue[index(end - 1), AFTER] = name
+    bucket[b, LAST] = name
     state[BAD] += 1
     if b < state[LOWEST]:
         state[LOWEST] = b
@@ -75,11 +75,11 @@ def drop_triangle(t, queue, bucket, state):
     if before == NONE:
         bucket[b, FIRST] = after
     else:
-        queue[index(before), AFTER] = after
+        queue[index(before - 1), AFTER] = after
     if after == NONE:
         bucket[b, LAST] = before
     else:
-        queue[index(after), BEFORE] = before
+        queue[index(after - 1), BEFORE] = before
 
 
 @kernel
@@ -87,7 +87,7 @@ def pop_triangle(queue, bucket, state):
     """Take out the bad triangle with the shortest edge. There is one, so the search upwards ends."""
     while bucket[state[LOWEST], FIRST] == NONE:
         state[LOWEST] += 1
-    t = index(bucket[state[LOWEST], FIRST])
+    t = index(bucket[state[LOWEST], FIRST] - 1)
     drop_triangle(t, queue, bucket, state)
     return t
 

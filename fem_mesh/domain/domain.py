@@ -159,6 +159,12 @@ class Domain:
 
     # ---- showing -------------------------------------------------------------------------------------
 
+    def write(self, path: Any) -> tuple[str, ...]:
+        """Write the domain to ``path``, a .poly or .node file. Returns what that format cannot keep, in sentences."""
+        from fem_mesh.files.endings import write
+
+        return write(self, path)
+
     def plot(self, ax: Any = None, **options: Any) -> Any:
         """Draw the domain on Matplotlib axes ``ax``, or as a picture of its own (see ``fem_mesh.watch.outline``)."""
         from fem_mesh.watch.outline import plot_domain

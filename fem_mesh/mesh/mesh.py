@@ -72,6 +72,7 @@ class Mesh:
     neighbors: np.ndarray
     segments: np.ndarray
     merged_into: np.ndarray
+    regions: np.ndarray
     region_names: tuple[str, ...]
     segment_of: np.ndarray
     boundaries: Mapping[str, np.ndarray]
@@ -243,6 +244,20 @@ class Mesh:
         weights = quality.barycentric(self.points[corners], np.column_stack([x[inside], y[inside]]))
         result[inside] = (weights * values[corners]).sum(axis=1)
         return float(result) if result.ndim == 0 else result
+
+    # ---- files ------------------------------------------------------------------------------------
+
+    def write(self, path: Any) -> tuple[str, ...]:
+        """Write the mesh to ``path``; the ending decides the format. Returns what that format cannot keep, in sentences."""
+        from fem_mesh.files.endings import write
+
+        return write(self, path)
+
+    def to_meshio(self) -> Any:
+        """The mesh as a ``meshio.Mesh``, with its segments, boundaries and regions."""
+        from fem_mesh.files.formats import to_meshio
+
+        return to_meshio(self)
 
     # ---- showing ---------------------------------------------------------------------------------
 

@@ -141,8 +141,8 @@ class Workspace:
         arrays = (self.origin, self.twin, self.name, number, triangles, neighbors)
         m = call(list_triangles, *arrays, size=len(self.points))
         merged_into = self.merged_into() if m else _first_equal(self.points)
-        arrays = {"merged_into": merged_into, "note": self.note, "work": self.counters()}
-        return Mesh._of(self.points, triangles[:m], neighbors[:m], **arrays)
+        found = triangles[:m], neighbors[:m]
+        return Mesh._of(self.points, *found, merged_into=merged_into, note=self.note, work=self.counters())
 
     def merged_into(self) -> np.ndarray:
         """Each point's representative under the user's numbers, int32 (n,)."""

@@ -75,8 +75,12 @@ def draw_step(
     _polygons(page, everything, step.added if k else (), "new", dark, shown)
     _polygons(page, everything, step.added if not k else (), "mesh", dark, shown, listed=False)
     _edges(page, everything, vanished_edges(step.removed, triangles.tolist()), dark, shown, role="gone", zorder=3.2)
+    _edges(page, everything, trace.segments(k).tolist(), dark, shown, role="segment", zorder=2.9)
+    _edges(page, everything, step.asked, dark, shown, role="asked", zorder=2.95)
     if circles:
         _circles(page, everything, step.circles, dark, shown)
+        _diametral_circles(page, everything, step.encroached, dark, shown)
+    _edges(page, everything, step.encroached, dark, shown, role="encroached")
     _edges(page, everything, step.edges, dark, shown)
     there = ~np.isnan(points[:, 0])
     _markers(page, trace.points_to_come(k), "waiting", dark, shown)
@@ -204,25 +208,34 @@ def _edges(
 
 
 def _circles(page: Axes, points: np.ndarray, triangles: Iterable[Any], dark: bool, shown: list[str]) -> None:
-    circles = [circumcircle(*points[list(t)].ravel().tolist()) for t in triangles]
+    _rings(page, [circumcircle(*points[list(t)].ravel().tolist()) for t in triangles], dark, shown, "circle")
+
+
+def _diametral_circles(page: Axes, points: np.ndarray, edges: Iterable[Any], dark: bool, shown: list[str]) -> None:
+    ends = [points[list(edge)] for edge in edges]
+    circles = [(*pair.mean(axis=0).tolist(), float(np.hypot(*(pair[1] - pair[0]))) / 2) for pair in ends]
+    _rings(page, circles, dark, shown, "diametral")
+
+
+def _rings(page: Axes, circles: list[tuple[float, float, float]], dark: bool, shown: list[str], name: str) -> None:
     left, right, bottom, top = (*page.get_xlim(), *page.get_ylim())
     center, reach = ((left + right) / 2, (bottom + top) / 2), math.hypot(right - left, top - bottom) / 2
-    role = ROLES["circle"]
+    role = ROLES[name]
     large = [circle for circle in circles if VIEWS * reach < circle[2] < math.inf]
-    arcs = LineCollection([_arc(*circle, center, reach) for circle in large], colors=color_of("circle", dark), zorder=3.6)
+    arcs = LineCollection([_arc(*circle, center, reach) for circle in large], colors=color_of(name, dark), zorder=3.6)
     arcs.set_linewidth(role.width)
     arcs.set_linestyle((0, role.dash))
     page.add_collection(arcs, autolim=False)
     circles = [circle for circle in circles if circle[2] <= VIEWS * reach]
     if large or circles:
-        shown.append("circle")
+        shown.append(name)
     if not circles:
         return
     x, y, radius = np.array(circles).T
     page.add_collection(
         EllipseCollection(
             2 * radius, 2 * radius, np.zeros(len(x)), units="xy", offsets=np.column_stack([x, y]),
-            offset_transform=page.transData, facecolors="none", edgecolors=color_of("circle", dark),
+            offset_transform=page.transData, facecolors="none", edgecolors=color_of(name, dark),
             linewidths=role.width, linestyles=[(0, role.dash)], zorder=3.6,
         ),
         autolim=False,

@@ -1,0 +1,362 @@
+"""``ruppert``, watched: the events of its kernel told as steps."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Generator, Iterable
+from typing import Any
+
+from fem_mesh.algorithms.cavities import next_vertex
+from fem_mesh.algorithms.constrained_delaunay import watched
+from fem_mesh.algorithms.refine import as_bounds, begin_refinement, refinement_events
+from fem_mesh.algorithms.refinement import Refiner
+from fem_mesh.algorithms.ruppert import (
+    CAVITY,
+    CLEARED,
+    CLEARING,
+    ENCROACHED,
+    EXCUSED,
+    FROZEN_WHOLE,
+    INSERTED,
+    REFUSED,
+    REJECTED,
+    SPENT,
+    SPLIT,
+    SPLITTING,
+    TAKEN,
+)
+from fem_mesh.algorithms.steiner import LARGE, LONG, SKINNY, judge
+from fem_mesh.algorithms.worklists import ADDED, MOST, QUEUED, STATUS
+from fem_mesh.domain.domain import Domain
+from fem_mesh.kernel import view
+from fem_mesh.mesh.halfedge import prev_edge
+from fem_mesh.mesh.mesh import Mesh
+from fem_mesh.mesh.quality import circumcircle
+from fem_mesh.mesh.workspace import SEGMENTS
+from fem_mesh.steps import Step, Triangle, many
+
+Edge = tuple[int, int]
+
+
+def ruppert(
+    domain: Domain | Mesh,
+    min_angle: float = 20.0,
+    max_area: float | None = None,
+    size: float | Callable[..., Any] | None = None,
+    max_points: int | None = None,
+    where: Any = None,
+    encroachment: str = "lens",
+    steiner: str = "offcenter",
+) -> Generator[Step, None, Mesh]:
+    """``refine``, step by step: yields every encroachment, split, bad triangle, Steiner point and rejection; returns the Mesh.
+
+    Takes the arguments of ``refine``, and raises as it does. Ruppert's own algorithm is
+    ``encroachment="circle", steiner="circumcenter"``. Source: Ruppert 1995; see ``refine`` for the others.
+
+    >>> import fem_mesh as fm
+    >>> flat = fm.Domain.from_loops([(0, 0), (4, 0), (4, 1), (0, 1)])
+    >>> for step in fm.ruppert(flat, min_angle=20):
+    ...     print(step.kind, "-", step.caption)
+    start - 2 triangles on 4 points, 4 segments: no angle is to be below 20 degrees
+    """
+    bounds = as_bounds(min_angle, max_area, size, max_points, encroachment, steiner)
+    return _Watcher(begin_refinement(domain, bounds, where)).steps()
+
+
+class _Watcher:
+    """Turns events into steps. From the event before a change it remembers what the change is about."""
+
+    def __init__(self, refiner: Refiner) -> None:
+        self.refiner, self.work, self.parts = refiner, refiner.parts.work, refiner.parts
+        self.doomed: tuple[Triangle, ...] = ()
+        self.triangle: Triangle = (0, 0, 0)  # the bad one
+        self.edge: Edge = (0, 0)  # the sub-segment
+        self.cause: dict[int, Triangle] = {}  # the bad triangle whose Steiner point encroached upon each sub-segment
+        self.vertex = -1  # the one to be cleared
+        self.dug = 0  # triangles in the cavity, ghosts among them
+
+    def steps(self) -> Generator[Step, None, Mesh]:
+        yield self.start()
+        for event, where in refinement_events(self.refiner, watched):
+            tell = TELLERS.get(event)
+            step = tell(self, where) if tell else None
+            if step is not None:
+                yield step
+        changes = self.renumbering()
+        mesh = self.refiner.finish()
+        yield Step("done", say_done, **changes, result=mesh.refinement, m=len(mesh.triangles), angle=mesh.min_angle)
+        return mesh
+
+    # ---- each event ------------------------------------------------------------------------------
+
+    def start(self) -> Step:
+        added = tuple(t for t in map(self.work.corners, range(self.parts.count)) if t)
+        points = [(v, *point) for v, point in enumerate(self.work.points.tolist())]
+        count = int(self.work.state[SEGMENTS])
+        segments = tuple(self.work.edge(h) for h in self.parts.edge_of[1 : count + 1].tolist())
+        bounds = self.refiner.bounds
+        return Step("start", say_start, added=added, new_points=points, new_segments=segments, bounds=bounds)
+
+    def encroached(self, h: int) -> Step:
+        self.edge = self.work.edge(h)
+        seen = [(angle_over(self.place(v), *map(self.place, self.edge)), v) for v in self.apexes(h)]
+        angle, v = max(seen, default=(0.0, -1))
+        cause = self.cause.pop(int(self.parts.segment[h]), None)
+        inside = angle > (180 - 2 * self.refiner.bounds.min_angle if self.refiner.bounds.lens else 90) - 1e-9
+        return Step(
+            "encroached", say_encroached, encroached=(self.edge,), doomed=() if inside or not cause else (cause,),
+            point=self.place(v) if inside else None, edge=self.edge, v=v, angle=angle, inside=inside, cause=cause,
+        )  # fmt: skip
+
+    def clearing(self, h: int) -> None:
+        work, first, around = self.work, h, []
+        self.vertex = work.edge(h)[0]
+        while True:  # once around the vertex
+            around.append(work.corners(h // 3))
+            h = work.twin.item(prev_edge(h))
+            if h == first:
+                break
+        self.doomed = tuple(t for t in around if t)
+
+    def cleared(self, degree: int) -> Step:
+        added = self.listed(range(2, degree))
+        return Step(
+            "clear", say_clear, added=added, removed=self.doomed, gone_points=(self.vertex,), encroached=(self.edge,),
+            v=self.vertex, edge=self.edge,
+        )  # fmt: skip
+
+    def splitting(self, dug: int) -> None:
+        self.dug, self.doomed = dug, self.listed(range(dug))
+
+    def split(self, v: int) -> Step:
+        (a, b), name, point = self.edge, self.work.name.item(v), self.at(v)
+        added = self.listed(range(self.dug + 2))
+        ends = self.place(a), self.place(b)
+        return Step(
+            "split", say_split, added=added, removed=self.doomed, new_points=((name, *point),), point=point,
+            gone_segments=(self.edge,), new_segments=((a, name), (name, b)), edge=self.edge, v=name,
+            part=math.dist(ends[0], point) / math.dist(*ends), off=off_chord(point, *ends), size=math.dist(*ends),
+        )  # fmt: skip
+
+    def whole(self, h: int) -> Step:
+        return Step("precision", say_whole, encroached=(self.edge,), edge=self.edge)
+
+    def taken(self, h: int) -> Step:
+        t = h // 3
+        corners = self.work.corners(t)
+        assert corners is not None
+        self.triangle = corners
+        refiner, work = self.refiner, self.work
+        arrays = map(view, (work.xy, work.origin, refiner.label, refiner.limit, refiner.wanted))
+        verdict, _, square = judge(t, *arrays)
+        facts: Any = measures([self.place(v) for v in corners])
+        return Step(
+            VERDICTS[verdict], say_taken, doomed=(corners,), circles=(corners,), edges=(work.edge(h),), t=corners,
+            verdict=verdict, shortest=math.sqrt(square), bounds=refiner.bounds, **facts,
+        )  # fmt: skip
+
+    def cavity(self, dug: int) -> Step:
+        self.dug, self.doomed = dug, self.listed(range(dug))
+        point = self.at(next_vertex(view(self.work.state)))
+        x, y, radius = circumcircle(*(c for corner in self.triangle for c in self.place(corner)))
+        at_centre = math.dist((x, y), point) <= 1e-6 * radius
+        return Step(
+            "steiner", say_steiner, point=point, doomed=self.doomed, circles=(self.triangle,), t=self.triangle,
+            at_centre=at_centre, distance=math.dist((x, y), point), count=dug,
+        )  # fmt: skip
+
+    def inserted(self, v: int) -> Step:
+        name, point = self.work.name.item(v), self.at(v)
+        return Step(
+            "insert", say_insert, added=self.listed(range(self.dug + 2)), removed=self.doomed, new_points=((name, *point),), point=point, v=name,
+        )  # fmt: skip
+
+    def rejected(self, h: int) -> Step:
+        waiting = self.refiner.waiting
+        found = [s for s in range(1, int(self.work.state[SEGMENTS]) + 1) if waiting[s, STATUS] == QUEUED]
+        for s in found:
+            self.cause[s] = self.triangle
+        edges = tuple(self.work.edge(int(self.parts.edge_of[s])) for s in found)
+        point = self.at(next_vertex(view(self.work.state)))
+        return Step("reject", say_reject, point=point, encroached=edges, doomed=(self.triangle,), t=self.triangle)
+
+    def excused(self, h: int) -> Step:
+        return Step("skip", say_excused, visited=(self.triangle,), edges=(self.work.edge(h),), t=self.triangle)
+
+    def refused(self, h: int) -> Step:
+        return Step("precision", say_refused, visited=(self.triangle,), t=self.triangle)
+
+    def spent(self, _: int) -> Step:
+        return Step("budget", say_spent, added_points=int(self.work.state[ADDED]), most=int(self.work.state[MOST]))
+
+    # ---- what they read --------------------------------------------------------------------------
+
+    def place(self, name: int) -> tuple[float, float]:
+        """Where the point with this number is: points are numbered on in the order of their slots."""
+        n = len(self.work.points)
+        return (self.work.points.item(name, 0), self.work.points.item(name, 1)) if name < n else self.at(name + 1)
+
+    def at(self, v: int) -> tuple[float, float]:
+        return self.work.xy.item(v, 0), self.work.xy.item(v, 1)
+
+    def listed(self, places: Iterable[int]) -> tuple[Triangle, ...]:
+        """The triangles that ``cavity`` lists, without ghosts."""
+        corners = (self.work.corners(self.work.cavity.item(i)) for i in places)
+        return tuple(t for t in corners if t)
+
+    def apexes(self, h: int) -> list[int]:
+        """The vertices opposite the edge of ``h``, without the ghost."""
+        return [v for v in (self.work.apex(h), self.work.apex(self.work.twin.item(h))) if v >= 0]
+
+    def renumbering(self) -> dict[str, Any]:
+        """Where removed vertices have left gaps in the numbers, later ones move up: what changes for the trace."""
+        work = self.work
+        names = work.name.copy()
+        self.refiner.name_new_vertices()
+        moved = {int(old): int(new) for old, new in zip(names, work.name, strict=False) if new >= 0 and old != new}
+        where = {int(name): v for v, name in enumerate(work.name.tolist()) if name >= 0}
+        triangles = [t for t in map(work.corners, range(self.parts.count)) if t and set(moved.values()) & set(t)]
+        old = {new: o for o, new in moved.items()}
+        before = tuple(tuple(old.get(v, v) for v in t) for t in triangles)
+        points = [(new, *self.at(where[new])) for new in moved.values()]
+        gone = [v for v in moved if v not in set(moved.values())]
+        return {"added": triangles, "removed": before, "new_points": points, "gone_points": gone, "gaps": len(gone)}
+
+
+TELLERS: dict[int, Callable[[_Watcher, int], Step | None]] = {
+    ENCROACHED: _Watcher.encroached,
+    CLEARING: _Watcher.clearing,
+    CLEARED: _Watcher.cleared,
+    SPLITTING: _Watcher.splitting,
+    SPLIT: _Watcher.split,
+    FROZEN_WHOLE: _Watcher.whole,
+    TAKEN: _Watcher.taken,
+    CAVITY: _Watcher.cavity,
+    INSERTED: _Watcher.inserted,
+    REJECTED: _Watcher.rejected,
+    EXCUSED: _Watcher.excused,
+    REFUSED: _Watcher.refused,
+    SPENT: _Watcher.spent,
+}
+
+
+def angle_over(p: tuple[float, float], a: tuple[float, float], b: tuple[float, float]) -> float:
+    """The angle under which ``p`` sees ab, in degrees."""
+    (ux, uy), (vx, vy) = ((q[0] - p[0], q[1] - p[1]) for q in (a, b))
+    return math.degrees(math.atan2(abs(ux * vy - uy * vx), ux * vx + uy * vy))
+
+
+def off_chord(p: tuple[float, float], a: tuple[float, float], b: tuple[float, float]) -> float:
+    """How far ``p`` is from the line ab, as a part of ab."""
+    (ux, uy), (vx, vy) = ((q[0] - a[0], q[1] - a[1]) for q in (p, b))
+    return abs(ux * vy - uy * vx) / (vx * vx + vy * vy)
+
+
+def measures(corners: list[tuple[float, float]]) -> dict[str, float]:
+    """The smallest angle, the area and the longest edge of a triangle."""
+    a, b, c = corners
+    angles = [angle_over(a, b, c), angle_over(b, c, a), angle_over(c, a, b)]
+    area = abs((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])) / 2
+    return {"angle": min(angles), "area": area, "longest": max(math.dist(a, b), math.dist(b, c), math.dist(c, a))}
+
+
+# ---- captions --------------------------------------------------------------------------------------
+
+VERDICTS = {SKINNY: "skinny", LARGE: "large", LONG: "long"}
+
+
+def say_start(step: Step) -> str:
+    counts = (
+        many(len(step.added), "triangle"),
+        many(len(step.new_points), "point"),
+        many(len(step.new_segments), "sub-segment"),
+    )
+    bounds = step.facts["bounds"]
+    wanted = [f"angles of {bounds.min_angle:g} degrees or more"] if bounds.min_angle else []
+    wanted += [f"areas up to {bounds.max_area:.3g}"] if bounds.max_area < math.inf else []
+    wanted += [f"edges up to {bounds.max_edge:.3g}"] if bounds.max_edge < math.inf else []
+    wanted += ["edges up to size(x, y)"] if bounds.size else []
+    return f"{counts[0]} on {counts[1]}, {counts[2]}; asked for: {' and '.join(wanted) or 'nothing'}"
+
+
+def say_encroached(step: Step) -> str:
+    a, b = sorted(step.facts["edge"])
+    if step.facts["inside"]:
+        return f"sub-segment {a}-{b} is encroached: vertex {step.facts['v']} sees it under {step.facts['angle']:.4g} degrees"
+    if step.facts["cause"]:
+        return f"sub-segment {a}-{b} is encroached by the point that was to mend triangle {listing(step.facts['cause'])}"
+    return f"sub-segment {a}-{b} is encroached by a point that was not inserted"
+
+
+def say_clear(step: Step) -> str:
+    (a, b), v = sorted(step.facts["edge"]), step.facts["v"]
+    return f"vertex {v} lies inside the diametral circle of {a}-{b} and may go: it is removed before {a}-{b} is split"
+
+
+def say_split(step: Step) -> str:
+    (a, b), v, part = step.facts["edge"], step.facts["v"], step.facts["part"]
+    where = "in the middle"
+    if step.facts["off"] > 1e-9:
+        where = "on its curve"
+    elif abs(part - 0.5) > 1e-9:
+        corner, length = (a, part) if abs(math.log2(part * step.facts["size"]) % 1 - 0.5) > 0.499999 else (b, 1 - part)
+        where = f"at the distance {length * step.facts['size']:.4g}, a power of two, from its sharp corner {corner}"
+    return f"sub-segment {min(a, b)}-{max(a, b)} is split {where}, at the new vertex {v}: {change(step)}"
+
+
+def say_whole(step: Step) -> str:
+    a, b = sorted(step.facts["edge"])
+    return f"sub-segment {a}-{b} is not split: it is too short, or a rounded point would turn a triangle over"
+
+
+def say_taken(step: Step) -> str:
+    facts, bounds = step.facts, step.facts["bounds"]
+    t = f"triangle {listing(facts['t'])}"
+    if facts["verdict"] == SKINNY:
+        return f"{t} is skinny: its smallest angle, {facts['angle']:.3g} degrees, is below {bounds.min_angle:g}"
+    if facts["verdict"] == LARGE:
+        return f"{t} is too large: its area is {facts['area']:.3g}"
+    return f"{t} is too large: its longest edge is {facts['longest']:.3g}"
+
+
+def say_steiner(step: Step) -> str:
+    what = "the circumcentre" if step.facts["at_centre"] else "an off-center, nearer than the circumcentre,"
+    n = step.facts["count"]
+    return f"{what} of {listing(step.facts['t'])} would lie in {many(n, 'circle')}: {many(n, 'triangle')} would go"
+
+
+def say_insert(step: Step) -> str:
+    return f"no sub-segment is encroached: the point becomes vertex {step.facts['v']}, {change(step)}"
+
+
+def say_reject(step: Step) -> str:
+    edges = ", ".join(f"{min(edge)}-{max(edge)}" for edge in step.encroached)
+    one = len(step.encroached) == 1
+    return f"the point is not inserted: it encroaches upon {edges}, {'which is' if one else 'which are'} split first"
+
+
+def say_excused(step: Step) -> str:
+    return f"triangle {listing(step.facts['t'])} stays: its shortest edge spans a small angle of the input, which stays too"
+
+
+def say_refused(step: Step) -> str:
+    return f"triangle {listing(step.facts['t'])} stays: rounded, its point would not lie where it must"
+
+
+def say_spent(step: Step) -> str:
+    return f"the budget is spent: {many(step.facts['added_points'], 'point')} added, and no more are allowed"
+
+
+def say_done(step: Step) -> str:
+    result, m = step.facts["result"], step.facts["m"]
+    gaps = "; numbers move up to close gaps" if step.facts["gaps"] else ""
+    return f"{result!r}: {many(m, 'triangle')}, smallest angle {step.facts['angle']:.1f} degrees{gaps}"
+
+
+def listing(triangle: Triangle) -> str:
+    return ", ".join(map(str, triangle))
+
+
+def change(step: Step) -> str:
+    comes, goes = len(step.added), len(step.removed)
+    return f"{many(comes, 'triangle')} come{'s' * (comes == 1)}, {goes} go{'es' * (goes == 1)}"
