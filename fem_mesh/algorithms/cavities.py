@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from fem_mesh.algorithms.encroachment import (
+    CORNER,
     FIRST_UNUSED,
     SHORTEST,
     SPOT_X,
@@ -251,12 +252,25 @@ def mark_halves(a, b, s, dug, origin, twin, segment, edge_of, piece_of, waiting,
 
 
 @kernel
-def look_at_halves(v, s, r, dug, xy, origin, twin, segment, edge_of, ring, limits, waiting, state):
-    """Let the sub-segments that are now encroached wait: the halves ``s`` and ``r``, and those around the fan of ``v``."""
-    for half in (s, r):
-        if is_encroached(index(edge_of[half]), xy, origin, twin, limits, state):
-            push_segment(half, waiting, state)
+def push_encroached_ring(v, dug, xy, origin, segment, ring, limits, waiting, state):
+    """Let the sub-segments around the fan of ``v`` wait that it encroaches upon."""
     for i in range(dug + 2):
         g = ring[i]
         if segment[g] != 0 and encroaches(v, g, state[LENS], xy, origin, limits):
             push_segment(segment[g], waiting, state)
+
+
+@kernel
+def split_segment(
+    v, h, dug, xy, origin, twin, segment, edge_of, piece_of, place, label, wanted, bounds, queue, bucket, waiting,
+    limits, cavity, ring, state,
+):  # fmt: skip
+    """Fill the cavity of ``v``, which splits sub-segment ``h``; let what is now encroached wait."""
+    a, b, s = origin[h], origin[next_edge(h)], unmark(h, twin, segment)
+    take_vertex(v, piece_of[s] + 1 if piece_of[s] >= 0 else CORNER, place, state)
+    fill(v, dug, xy, origin, twin, segment, edge_of, label, wanted, bounds, queue, bucket, cavity, ring, state)
+    r = mark_halves(a, b, s, dug, origin, twin, segment, edge_of, piece_of, waiting, cavity, state)
+    for half in (s, r):
+        if is_encroached(index(edge_of[half]), xy, origin, twin, limits, state):
+            push_segment(half, waiting, state)
+    push_encroached_ring(v, dug, xy, origin, segment, ring, limits, waiting, state)

@@ -19,7 +19,7 @@ from fem_mesh.errors import MeshError
 from fem_mesh.mesh.mesh import Mesh
 
 STEEPEST = 60.0  # degrees: no triangle has a larger smallest angle
-ENCROACHMENTS, STEINER_POINTS = ("lens", "circle"), ("offcenter", "circumcenter")
+ENCROACHMENTS, STEINER_POINTS = ("lens", "circle"), ("relocation", "offcenter", "circumcenter")
 
 
 def refine(
@@ -30,7 +30,7 @@ def refine(
     max_points: int | None = None,
     where: Any = None,
     encroachment: str = "lens",
-    steiner: str = "offcenter",
+    steiner: str = "relocation",
 ) -> Mesh:
     """A mesh of ``domain`` whose angles are all at least ``min_angle``, and which is as fine as you ask.
 
@@ -123,7 +123,7 @@ def as_bounds(
     return Bounds(
         min_angle=angle, max_area=area, max_edge=edge, size=size if callable(size) else None,
         max_points=None if max_points is None else int(max_points),
-        lens=encroachment == "lens", offcenter=steiner == "offcenter",
+        lens=encroachment == "lens", offcenter=steiner != "circumcenter", relocate=steiner == "relocation",
     )  # fmt: skip
 
 

@@ -21,6 +21,7 @@ from fem_mesh.algorithms.encroachment import (
     in_range,
     shell,
 )
+from fem_mesh.algorithms.relocation import COSINE_T, LIMITS, SINE_T
 from fem_mesh.algorithms.steiner import COSINE, FINE, MAX_AREA, MAX_EDGE, NO_ANGLE, SKINNY, UNBOUNDED, is_excused, judge
 from fem_mesh.algorithms.worklists import (
     ADDED,
@@ -35,6 +36,7 @@ from fem_mesh.algorithms.worklists import (
     NUMBER,
     OFF_CURVE,
     OFFCENTER,
+    RELOCATE,
     UNSIZED,
 )
 from fem_mesh.errors import MeshError
@@ -46,6 +48,7 @@ from fem_mesh.mesh.workspace import NEXT, SEGMENTS
 
 Size = Callable[[np.ndarray, np.ndarray], np.ndarray]
 OFFCENTER_SHARE = 0.475  # of the way to the point where the new triangle would just keep the bound (half an edge = 0.5)
+ROUNDING = 1e-9  # moved vertices keep the bound by so much more
 SMALLEST_PART = 2.0**-40  # of the domain's size: no edge shorter than this is split
 FEWEST = 100_000  # points that a refinement without a budget may always add
 SPARE = 4  # times as many as it is expected to need
@@ -64,6 +67,7 @@ class Bounds:
     max_points: int | None = None
     lens: bool = True
     offcenter: bool = True
+    relocate: bool = True
 
 
 @dataclass
@@ -103,9 +107,11 @@ class Refiner:
         if chosen is not None:
             label[: len(chosen)] += kinds * ~chosen
         cosine = math.cos(math.radians(bounds.min_angle))
-        limits = np.zeros(5)
+        limits = np.zeros(LIMITS)
         limits[LENS_COSINE] = max(0.0, 2 * cosine * cosine - 1) ** 2
         limits[OFFSET] = OFFCENTER_SHARE * math.sqrt((1 + cosine) / (1 - cosine)) if cosine < 1 else math.inf
+        angle = math.radians(bounds.min_angle * (1 + ROUNDING))
+        limits[COSINE_T], limits[SINE_T] = math.cos(angle), math.sin(angle)
         extent = float(np.ptp(work.xy[1:], axis=0).max(initial=0.0))
         limits[SHORTEST] = (SMALLEST_PART * extent) ** 2
         curved = np.zeros(len(parts.ends) + 1, bool)  # the last row is that of NO_PIECE
@@ -116,7 +122,8 @@ class Refiner:
             waiting=np.zeros((len(parts.edge_of), 2), np.uint32), limits=limits, domain=domain,
         )  # fmt: skip
         state = work.state
-        state[LENS], state[OFFCENTER], state[LABELLED] = bounds.lens, bounds.offcenter, bool(label.any())
+        state[LENS], state[OFFCENTER], state[RELOCATE] = bounds.lens, bounds.offcenter, bounds.relocate
+        state[LABELLED] = bool(label.any())
         state[LOWEST], state[MOST] = BUCKETS - 1, bounds.max_points or 0
         real = ~ghosts_of(work.origin, parts.count) & (label < kinds)
         refiner.expect(areas_of(work.xy[work.origin[: 3 * parts.count].reshape(-1, 3)[real]]), math.inf)

@@ -26,14 +26,13 @@ from fem_mesh.algorithms.cavities import (
     dig_split,
     fill,
     look_around,
-    look_at_halves,
-    mark_halves,
     next_vertex,
     push_if_bad,
+    split_segment,
     take_vertex,
-    unmark,
 )
-from fem_mesh.algorithms.encroachment import CORNER, FREE, find_free_vertex_inside, is_encroached
+from fem_mesh.algorithms.encroachment import FREE, find_free_vertex_inside, is_encroached
+from fem_mesh.algorithms.relocation import find_movable, move_vertex
 from fem_mesh.algorithms.steiner import COSINE, FINE, MAX_AREA, MAX_EDGE, NO_ANGLE, SKINNY, UNBOUNDED, is_excused, judge
 from fem_mesh.algorithms.worklists import (
     ADDED,
@@ -48,7 +47,9 @@ from fem_mesh.algorithms.worklists import (
     INSERTIONS,
     LENS,
     MOST,
+    MOVES,
     NONE,
+    RELOCATE,
     UNSIZED,
     WAITING,
     bucket_of,
@@ -59,12 +60,12 @@ from fem_mesh.algorithms.worklists import (
     push_triangle,
 )
 from fem_mesh.kernel import SETTLED, index, kernel
-from fem_mesh.mesh.halfedge import next_edge, triangle_of
+from fem_mesh.mesh.halfedge import triangle_of
 from fem_mesh.mesh.workspace import COUNT, NEXT, SEGMENTS
 
-ENCROACHED, SPLITTING, CLEARING, TAKEN, CAVITY = 1, 2, 3, 4, 5
-SPLIT, FROZEN_WHOLE, CLEARED, INSERTED, REJECTED, EXCUSED, REFUSED = (SETTLED + i for i in range(1, 8))
-FULL, SPENT, SIZES_WANTED, POINT_WANTED = (SETTLED + i for i in range(8, 12))  # the last event: the caller has to act
+ENCROACHED, SPLITTING, CLEARING, TAKEN, CAVITY, MOVING = 1, 2, 3, 4, 5, 6
+SPLIT, FROZEN_WHOLE, CLEARED, INSERTED, REJECTED, EXCUSED, REFUSED, MOVED = (SETTLED + i for i in range(1, 9))
+FULL, SPENT, SIZES_WANTED, POINT_WANTED = (SETTLED + i for i in range(9, 13))  # the last event: the caller has to act
 
 
 @kernel
@@ -98,12 +99,10 @@ def refine_mesh(
                 yield FROZEN_WHOLE, h
                 continue
             yield SPLITTING, index(dug)
-            a, b = origin[h], origin[next_edge(h)]
-            take_vertex(v, piece_of[s] + 1 if piece_of[s] >= 0 else CORNER, place, state)
-            unmark(h, twin, segment)
-            fill(v, dug, xy, origin, twin, segment, edge_of, label, wanted, bounds, queue, bucket, cavity, ring, state)
-            r = mark_halves(a, b, s, dug, origin, twin, segment, edge_of, piece_of, waiting, cavity, state)
-            look_at_halves(v, s, r, dug, xy, origin, twin, segment, edge_of, ring, limits, waiting, state)
+            split_segment(
+                v, h, dug, xy, origin, twin, segment, edge_of, piece_of, place, label, wanted, bounds, queue, bucket, waiting,
+                limits, cavity, ring, state,
+            )  # fmt: skip
             yield SPLIT, v
             continue
 
@@ -112,6 +111,17 @@ def refine_mesh(
         yield TAKEN, h
         if verdict == SKINNY and is_excused(h, xy, origin, segment, place, ends):
             yield EXCUSED, h
+            continue
+        movable = False
+        if verdict == SKINNY and may_move(t, label, bounds, wanted, state):
+            movable, h = find_movable(h, xy, origin, twin, segment, place, label, wanted, bounds, limits, state)
+        if movable:
+            yield MOVING, h
+            v = move_vertex(
+                h, xy, origin, twin, segment, edge_of, place, label, wanted, bounds, queue, bucket, waiting, limits,
+                cavity, ring, state,
+            )  # fmt: skip
+            yield MOVED, v
             continue
         v = next_vertex(state)
         dug = dig_point(h, v, xy, origin, twin, segment, limits, cavity, ring, state)
@@ -161,6 +171,19 @@ def is_asked_for(h, twin, label, bounds):
         if bounds[row, COSINE] < NO_ANGLE or bounds[row, MAX_AREA] < UNBOUNDED or bounds[row, MAX_EDGE] < UNBOUNDED:
             return True
     return False
+
+
+@kernel
+def may_move(t, label, bounds, wanted, state):
+    """Whether vertices may be moved: where sizes are asked for it saves little, and there are never more moves than points."""
+    row = label[t]
+    return (
+        state[RELOCATE] != 0
+        and state[MOVES] < state[ADDED]
+        and len(wanted) == 0
+        and bounds[row, MAX_AREA] == UNBOUNDED
+        and bounds[row, MAX_EDGE] == UNBOUNDED
+    )
 
 
 @kernel

@@ -46,7 +46,7 @@ def ruppert(
     max_points: int | None = None,
     where: Any = None,
     encroachment: str = "lens",
-    steiner: str = "offcenter",
+    steiner: str = "relocation",
 ) -> Generator[Step, None, Mesh]:
     """``refine``, step by step: yields every encroachment, split, bad triangle, Steiner point and rejection; returns the Mesh.
 

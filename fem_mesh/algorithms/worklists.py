@@ -30,6 +30,8 @@ LABELLED = 26  # whether triangles have bounds of their own
 GIVEN = 27  # whether `limits` holds the next split point, on a curve
 OFF_CURVE = 28  # split points that had to stay on a chord
 BEYOND = 29  # the half-edge of a split sub-segment whose triangle stays, plus 1, or 0
+RELOCATE = 30  # whether vertices are moved where that mends a triangle
+MOVES = 31  # how many were
 
 NONE = 0  # no triangle, where t + 1 stands for triangle t; no bucket
 STEPS = 4  # buckets to a factor of 2 in the square of a length
