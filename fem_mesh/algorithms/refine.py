@@ -35,20 +35,21 @@ def refine(
     """A mesh of ``domain`` whose angles are all at least ``min_angle``, and which is as fine as you ask.
 
     domain : a Domain; or a Mesh, whose points and segments stay
-    min_angle : in degrees; up to about 33 it ends almost always, 0 asks for nothing
+    min_angle : in degrees; up to 36 it ends almost always, 0 asks for nothing
     max_area : the largest area of a triangle
     size : the longest edge: a number, or a function ``size(x, y)`` of arrays that returns an array. No edge of a
         triangle is then longer than ``size`` at its corners and its centroid
     max_points : how many points may be added; by default some times what the sizes need, and at least 100,000
     where : bool (m,), with a Mesh: only these triangles, and what replaces them, are asked to keep the bounds
     encroachment : a segment is split if a vertex lies inside its diametral "circle" (Ruppert), or "lens" (Chew)
-    steiner : bad triangles are mended by their "circumcenter", or an "offcenter" (Uengoer) on the way to it
+    steiner : skinny triangles are mended by their "circumcenter", or by an "offcenter" on the way to it (Uengoer), or
+        by "relocation": where no sizes are asked for, a vertex added before is moved if that helps (Erten, Uengoer)
 
     Always returns a mesh that can be used: ``mesh.refinement`` says whether it is complete, and what was left
     and why: angles below 60 degrees in the input cannot be mended. Runs ``ruppert``, compiled where that is worth it.
 
     Raises MeshError for bounds that make no sense, and as ``constrained_delaunay`` does.
-    Sources: Ruppert 1995, Chew 1993, Miller, Pav and Walkington 2003, Uengoer 2004.
+    Sources: Ruppert 1995, Chew 1993, Miller, Pav and Walkington 2003, Uengoer 2004, Erten and Uengoer 2009.
 
     >>> import fem_mesh as fm
     >>> mesh = fm.refine(fm.Domain.from_loops([(0, 0), (3, 0), (3, 1), (0, 1)]), min_angle=30, size=0.5)

@@ -7,10 +7,9 @@ two ends be large enough: two half-planes. What all of them leave is convex; its
 
 from __future__ import annotations
 
-from fem_mesh.algorithms.cavities import clear_vertex, fill, next_vertex, push_encroached_ring, take_vertex
 from fem_mesh.algorithms.encroachment import FREE, SPOT_X, SPOT_Y, encroaches, in_range
 from fem_mesh.algorithms.steiner import FINE, judge
-from fem_mesh.algorithms.worklists import LENS, MOVES
+from fem_mesh.algorithms.worklists import LENS
 from fem_mesh.kernel import index, kernel
 from fem_mesh.mesh.constrained import dig_from, holds
 from fem_mesh.mesh.halfedge import is_right_of, next_edge, prev_edge, triangle_of
@@ -26,9 +25,9 @@ LIMITS = CORNERS + 4 * MOST_CORNERS
 def find_movable(h, xy, origin, twin, segment, place, label, wanted, bounds, limits, state):
     """Whether a free corner of h's triangle has a better place, which is left in ``limits``; and a half-edge from it."""
     for g in (h, next_edge(h), prev_edge(h)):
-        if place[origin[g]] == FREE and find_place(g, xy, origin, twin, limits):
-            if is_better(g, xy, origin, twin, segment, label, wanted, bounds, limits, state):
-                return True, g
+        found = place[origin[g]] == FREE and find_place(g, xy, origin, twin, limits)
+        if found and is_better(g, xy, origin, twin, segment, label, wanted, bounds, limits, state):
+            return True, g
     return False, index(h)
 
 
@@ -109,7 +108,8 @@ def is_better(g, xy, origin, twin, segment, label, wanted, bounds, limits, state
     while better:  # once around the vertex
         outer = next_edge(f)
         verdict, _, _ = judge(triangle_of(f), xy, origin, label, bounds, wanted)
-        if verdict != FINE or is_right_of(outer, xy[v, 0], xy[v, 1], xy, origin) or (segment[outer] != 0 and encroaches(v, outer, state[LENS], xy, origin, limits)):
+        better = verdict == FINE and not is_right_of(outer, xy[v, 0], xy[v, 1], xy, origin)
+        if segment[outer] != 0 and encroaches(v, outer, state[LENS], xy, origin, limits):
             better = False
         f = twin[prev_edge(f)]
         if f == g:
@@ -119,25 +119,15 @@ def is_better(g, xy, origin, twin, segment, label, wanted, bounds, limits, state
 
 
 @kernel
-def move_vertex(
-    g, xy, origin, twin, segment, edge_of, place, label, wanted, bounds, queue, bucket, waiting, limits, cavity, ring, state
-):  # fmt: skip
-    """Take the vertex that ``g`` leaves out, and put it into its new place; returns its number.
+def dig_landing(degree, v, xy, origin, twin, segment, limits, cavity, ring):
+    """Put ``v``, which was taken out, into its new place, and dig its cavity; returns the number of triangles.
 
-    The place lies in the hole that it leaves, so one of the triangles that fill the hole is in conflict with it.
+    The place lies in the hole that ``v`` left, so one of the triangles that fill it is in conflict with it.
     """
-    degree = clear_vertex(
-        g, xy, origin, twin, segment, edge_of, place, label, wanted, bounds, queue, bucket, cavity, state
-    )
-    v = next_vertex(state)
     px, py = limits[SPOT_X], limits[SPOT_Y]
     xy[v, 0], xy[v, 1] = px, py
     i = 2
     while not holds(index(3 * cavity[i]), px, py, xy, origin) and i + 1 < degree:
         i += 1
     dug, _ = dig_from(index(3 * cavity[i]), True, 0, 0, px, py, xy, origin, twin, segment, cavity, ring)
-    take_vertex(v, FREE, place, state)
-    fill(v, dug, xy, origin, twin, segment, edge_of, label, wanted, bounds, queue, bucket, cavity, ring, state)
-    push_encroached_ring(v, dug, xy, origin, segment, ring, limits, waiting, state)
-    state[MOVES] += 1
-    return v
+    return dug

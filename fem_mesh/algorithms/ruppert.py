@@ -1,9 +1,10 @@
-"""Delaunay refinement: Ruppert 1995, with Chew's lenses (1993) and Uengoer's off-centers (2004).
+"""Delaunay refinement: Ruppert 1995; with lenses (Chew 1993), off-centers (Uengoer 2004), moves (Erten, Uengoer 2009).
 
     while there is an encroached sub-segment or a bad triangle:
         if there is an encroached sub-segment:
             split it
         else take the bad triangle with the shortest edge:
+            if moving one of its vertices mends it (if that is allowed): move it
             choose its Steiner point: the circumcentre, or a point on the way to it
             if the point would encroach upon sub-segments: these are encroached
             else insert the point
@@ -27,12 +28,13 @@ from fem_mesh.algorithms.cavities import (
     fill,
     look_around,
     next_vertex,
+    push_encroached_ring,
     push_if_bad,
     split_segment,
     take_vertex,
 )
 from fem_mesh.algorithms.encroachment import FREE, find_free_vertex_inside, is_encroached
-from fem_mesh.algorithms.relocation import find_movable, move_vertex
+from fem_mesh.algorithms.relocation import dig_landing, find_movable
 from fem_mesh.algorithms.steiner import COSINE, FINE, MAX_AREA, MAX_EDGE, NO_ANGLE, SKINNY, UNBOUNDED, is_excused, judge
 from fem_mesh.algorithms.worklists import (
     ADDED,
@@ -63,9 +65,9 @@ from fem_mesh.kernel import SETTLED, index, kernel
 from fem_mesh.mesh.halfedge import triangle_of
 from fem_mesh.mesh.workspace import COUNT, NEXT, SEGMENTS
 
-ENCROACHED, SPLITTING, CLEARING, TAKEN, CAVITY, MOVING = 1, 2, 3, 4, 5, 6
-SPLIT, FROZEN_WHOLE, CLEARED, INSERTED, REJECTED, EXCUSED, REFUSED, MOVED = (SETTLED + i for i in range(1, 9))
-FULL, SPENT, SIZES_WANTED, POINT_WANTED = (SETTLED + i for i in range(9, 13))  # the last event: the caller has to act
+ENCROACHED, SPLITTING, CLEARING, TAKEN, CAVITY, MOVING, LANDING = 1, 2, 3, 4, 5, 6, 7
+SPLIT, FROZEN_WHOLE, CLEARED, INSERTED, REJECTED, EXCUSED, REFUSED, LIFTED, MOVED = (SETTLED + i for i in range(1, 10))
+FULL, SPENT, SIZES_WANTED, POINT_WANTED = (SETTLED + i for i in range(10, 14))  # the last event: the caller has to act
 
 
 @kernel
@@ -117,10 +119,17 @@ def refine_mesh(
             movable, h = find_movable(h, xy, origin, twin, segment, place, label, wanted, bounds, limits, state)
         if movable:
             yield MOVING, h
-            v = move_vertex(
-                h, xy, origin, twin, segment, edge_of, place, label, wanted, bounds, queue, bucket, waiting, limits,
-                cavity, ring, state,
-            )  # fmt: skip
+            degree = clear_vertex(
+                h, xy, origin, twin, segment, edge_of, place, label, wanted, bounds, queue, bucket, cavity, state
+            )
+            yield LIFTED, index(degree)
+            v = next_vertex(state)
+            dug = dig_landing(degree, v, xy, origin, twin, segment, limits, cavity, ring)
+            yield LANDING, index(dug)
+            take_vertex(v, FREE, place, state)
+            fill(v, dug, xy, origin, twin, segment, edge_of, label, wanted, bounds, queue, bucket, cavity, ring, state)
+            push_encroached_ring(v, dug, xy, origin, segment, ring, limits, waiting, state)
+            state[MOVES] += 1
             yield MOVED, v
             continue
         v = next_vertex(state)
