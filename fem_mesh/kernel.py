@@ -195,11 +195,12 @@ def _fingerprint(function: Callable[..., Any]) -> str:
 
 
 _numba_module: Any = False
+_registered = 0  # kernels that Numba knows
 
 
 def _numba() -> Any:
     """Numba with every kernel registered, or None where it cannot be imported or is switched off."""
-    global _numba_module
+    global _numba_module, _registered
     with _lock:
         if _numba_module is False:
             try:
@@ -218,16 +219,15 @@ def _numba() -> Any:
                 return lambda n: np.empty(n)
 
             _numba_module = None if numba.config.DISABLE_JIT else numba  # type: ignore[attr-defined]
-        if _numba_module is not None:
+        if _numba_module is not None and _registered < len(_kernels):
             from numba.extending import register_jitable
 
-            for function in _kernels:
-                if not hasattr(function, "__numba_registered__"):
-                    inline = "always" if function in _inlined else "never"
-                    # Counting references to arrays that the caller holds anyway would take half of the time.
-                    counted = "scratch" in function.__code__.co_names
-                    register_jitable(error_model="numpy", inline=inline, _nrt=counted)(function)
-                    function.__numba_registered__ = True  # type: ignore[attr-defined]
+            for function in _kernels[_registered:]:
+                inline = "always" if function in _inlined else "never"
+                # Counting references to arrays that the caller holds anyway would take half of the time.
+                counted = "scratch" in function.__code__.co_names
+                register_jitable(error_model="numpy", inline=inline, _nrt=counted)(function)
+            _registered = len(_kernels)
         return _numba_module
 
 

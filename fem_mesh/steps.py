@@ -24,7 +24,8 @@ class Step:
     gone_points : the numbers of the points that go
     asked : pairs of point numbers that are to become segments
     encroached : segments to show as encroached upon, with their diametral circles
-    facts : the numbers behind the caption, by name
+    facts : the numbers behind the caption, by name; ``makes_points`` of the first step says that later points are not
+        given but made, so that no picture shows them before they come
 
     A lecturer's own generator yields steps with the *full current lists* instead of differences, and
     may go on changing them: :func:`record` copies them at the yield and works out what changed.

@@ -74,8 +74,15 @@ class Trace(Sequence[Step]):
         """The edges that are segments after step ``k``: int32 (j, 2)."""
         return self._segments.at(range(len(self))[k])[1]
 
+    @property
+    def makes_points(self) -> bool:
+        """Whether later points are not given but made (see ``Step``)."""
+        return bool(self._steps) and bool(self[0].facts.get("makes_points"))
+
     def points_to_come(self, k: int) -> np.ndarray:
         """The points that come after step ``k``, but for the one it is about: float64 (j, 2)."""
+        if self.makes_points:
+            return np.empty((0, 2))
         born, _ = self._points.lifetimes()
         later = self._points.table()[born > k]
         point = self[k].point

@@ -176,7 +176,7 @@ def test_a_bound_beyond_reach_stops_at_the_budget_with_a_usable_mesh(bound):
     assert mesh.note
 
 
-@pytest.mark.parametrize("budget", [0, 1, 2, 3, 10])
+@pytest.mark.parametrize("budget", [0, 1, 2, 3, 6])
 def test_the_budget_is_kept_however_small(budget):
     mesh = refined(DOMAINS["letter_a"](), min_angle=30, max_points=budget)
     assert mesh.refinement.added <= budget
@@ -398,7 +398,7 @@ def test_both_drivers_agree_on_random_domains(seed):
 @pytest.mark.parametrize("name", ["letter_e", "wedge_of_12_degrees", "lattice_cells_1", "fork_of_10_degrees"])
 @pytest.mark.parametrize("encroachment", INSIDE_OUT)
 def test_every_frame_is_a_valid_triangulation(name, encroachment):
-    trace = fm.record(fm.ruppert(DOMAINS[name]().domain(), min_angle=25, max_points=40, encroachment=encroachment))
+    trace = fm.record(fm.ruppert(DOMAINS[name]().domain(), min_angle=34, max_points=40, encroachment=encroachment))
     for k in range(len(trace)):
         points, triangles = trace.frame(k)
         check.check_triangles(points, triangles.tolist())

@@ -51,7 +51,7 @@ def constrained_delaunay(domain: Domain) -> Mesh:
     >>> import fem_mesh as fm
     >>> outer, hole = [(0, 0), (4, 0), (4, 4), (0, 4)], [(1, 1), (3, 1), (3, 3), (1, 3)]
     >>> fm.constrained_delaunay(fm.Domain.from_loops(outer, hole))
-    Mesh: 8 points, 8 triangles, 8 segments, smallest angle 26.6 degrees
+    Mesh: 8 points, 8 triangles, 8 segments, smallest angle 18.4 degrees
     """
     parts = triangulate(as_domain(domain))
     for _ in constrain(domain, parts, drained):
@@ -111,13 +111,14 @@ def constrain(domain: Domain, parts: Segmented, drive: Driver) -> Iterator[tuple
         begin_at_seed(domain, parts, side, i, seeds[i], from_hull)
         yield from carve(domain, parts, parity, side, drive)
     color_regions(domain, parts, side, seeds[len(domain.holes) :])
-    laid = set(parts.piece_of[1 : work.state[SEGMENTS] + 1].tolist())
+    laid = parts.piece_of[1 : work.state[SEGMENTS] + 1]
     kept = side != OUTSIDE
     kept &= ~ghosts(parts)
     parts.keep(kept)
-    lost = sorted(laid - set(parts.piece_of[1:].tolist()))
+    left = parts.piece_of[1:]
+    lost = [] if (left >= 0).sum() == len(laid) else np.setdiff1d(laid, left).tolist()
     if lost:
-        work.note = f"{many(len(lost), 'segment')} outside the domain: {_rows(domain, lost)}"
+        work.note = f"outside the domain, and gone: segment{'s' * (len(lost) > 1)} {_rows(domain, lost)}"
 
 
 def ghosts(parts: Segmented) -> np.ndarray:
@@ -209,7 +210,7 @@ def _rows(domain: Domain, rows: list[int]) -> str:
 
 
 def _say_crossing(domain: Domain, row: int, other: int) -> str:
-    return f"segments {_rows(domain, [row])} and {_rows(domain, [other])} cross: crossings='split' puts a point there"
+    return f'segments {_rows(domain, [row])} and {_rows(domain, [other])} cross: mend them, or say crossings="split"'
 
 
 def _say_conflict(domain: Domain, row: int) -> str:
@@ -260,7 +261,7 @@ def _watch(domain: Domain, parts: Segmented) -> Generator[Step, None, Mesh]:
     doomed: tuple[Triangle, ...] = ()
     for stage, event, where in constrain(domain, parts, watched):
         if stage == "carving":
-            yield _carve_step(work, where)
+            yield _carve_step(work, where, seeds=bool(len(domain.holes)))
         elif event == CROSSED:
             row, begun = work.state.item(PIECE), work.state.item(FROM)
             doomed = tuple(t for t in map(work.corners, work.cavity[:where].tolist()) if t)
@@ -276,10 +277,10 @@ def _watch(domain: Domain, parts: Segmented) -> Generator[Step, None, Mesh]:
     return mesh
 
 
-def _carve_step(work: Workspace, t: int) -> Step:
+def _carve_step(work: Workspace, t: int, seeds: bool) -> Step:
     gone = work.corners(t)
     assert gone is not None
-    return Step("carve", say_carve, removed=(gone,), t=gone)
+    return Step("carve", say_carve, removed=(gone,), doomed=(gone,), t=gone, seeds=seeds)
 
 
 # ---- captions --------------------------------------------------------------------------------------
@@ -304,7 +305,9 @@ def say_segment(step: Step) -> str:
 
 def say_carve(step: Step) -> str:
     a, b, c = step.facts["t"]
-    return f"the flood reaches triangle {a}, {b}, {c}: it lies outside the domain"
+    if step.facts["seeds"]:
+        return f"the flood reaches triangle {a}, {b}, {c} without crossing a segment: it goes"
+    return f"from outside, an even number of outlines is crossed on the way to triangle {a}, {b}, {c}: it goes"
 
 
 def say_done(step: Step) -> str:

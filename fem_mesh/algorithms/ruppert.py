@@ -52,6 +52,7 @@ from fem_mesh.algorithms.worklists import (
     MOVES,
     NONE,
     RELOCATE,
+    TAKEN,
     UNSIZED,
     WAITING,
     bucket_of,
@@ -65,7 +66,7 @@ from fem_mesh.kernel import SETTLED, index, kernel
 from fem_mesh.mesh.halfedge import triangle_of
 from fem_mesh.mesh.workspace import COUNT, NEXT, SEGMENTS
 
-ENCROACHED, SPLITTING, CLEARING, TAKEN, CAVITY, MOVING, LANDING = 1, 2, 3, 4, 5, 6, 7
+ENCROACHED, SPLITTING, CLEARING, CAVITY, MOVING, LANDING = 1, 2, 3, 4, 5, 6
 SPLIT, FROZEN_WHOLE, CLEARED, INSERTED, REJECTED, EXCUSED, REFUSED, LIFTED, MOVED = (SETTLED + i for i in range(1, 10))
 FULL, SPENT, SIZES_WANTED, POINT_WANTED = (SETTLED + i for i in range(10, 14))  # the last event: the caller has to act
 
@@ -110,7 +111,7 @@ def refine_mesh(
 
         t = pop_triangle(queue, bucket, state)
         verdict, h, square = judge(t, xy, origin, label, bounds, wanted)
-        yield TAKEN, h
+        state[TAKEN] = h
         if verdict == SKINNY and is_excused(h, xy, origin, segment, place, ends):
             yield EXCUSED, h
             continue

@@ -75,8 +75,7 @@ def say_insert(step: Step) -> str:
 
 
 def say_lift(step: Step) -> str:
-    v, t = step.facts["v"], step.facts["t"]
-    return f"vertex {v} of triangle {listing(t)} has a better place, where all angles around it keep the bound: it is taken out"
+    return f"vertex {step.facts['v']} has a better place, where all angles around it keep the bound: it is taken out"
 
 
 def say_move(step: Step) -> str:

@@ -27,7 +27,6 @@ from fem_mesh.algorithms.ruppert import (
     SPENT,
     SPLIT,
     SPLITTING,
-    TAKEN,
 )
 from fem_mesh.algorithms.ruppert_captions import (
     VERDICTS,
@@ -51,7 +50,7 @@ from fem_mesh.algorithms.ruppert_captions import (
     say_whole,
 )
 from fem_mesh.algorithms.steiner import judge
-from fem_mesh.algorithms.worklists import ADDED, MOST, QUEUED, STATUS
+from fem_mesh.algorithms.worklists import ADDED, MOST, QUEUED, STATUS, TAKEN
 from fem_mesh.domain.domain import Domain
 from fem_mesh.kernel import view
 from fem_mesh.mesh.halfedge import prev_edge
@@ -82,7 +81,15 @@ def ruppert(
     >>> flat = fm.Domain.from_loops([(0, 0), (4, 0), (4, 1), (0, 1)])
     >>> for step in fm.ruppert(flat, min_angle=20):
     ...     print(step.kind, "-", step.caption)
-    start - 2 triangles on 4 points, 4 segments: no angle is to be below 20 degrees
+    start - 2 triangles on 4 points, 4 sub-segments; asked for: angles of 20 degrees or more
+    skinny - triangle 2, 0, 1 is skinny: its smallest angle, 14 degrees, is below 20
+    steiner - the circumcentre of 2, 0, 1 would lie in 2 circles: 2 triangles would go
+    reject - the point is not inserted: it encroaches upon 0-1, 2-3, which are split first
+    encroached - sub-segment 2-3 is encroached by the point that was to mend triangle 2, 0, 1
+    split - sub-segment 2-3 is split in the middle, at the new vertex 4: 3 triangles come, 2 go
+    encroached - sub-segment 0-1 is encroached by the point that was to mend triangle 2, 0, 1
+    split - sub-segment 0-1 is split in the middle, at the new vertex 5: 2 triangles come, 1 goes
+    done - Refinement: complete, 2 points added: 4 triangles, smallest angle 26.6 degrees
     """
     bounds = as_bounds(min_angle, max_area, size, max_points, encroachment, steiner)
     return _Watcher(begin_refinement(domain, bounds, where)).steps()
@@ -103,6 +110,8 @@ class _Watcher:
     def steps(self) -> Generator[Step, None, Mesh]:
         yield self.start()
         for event, where in refinement_events(self.refiner, watched):
+            if event in ABOUT_A_TRIANGLE:
+                yield self.taken(self.work.state.item(TAKEN))
             tell = TELLERS.get(event)
             step = tell(self, where) if tell else None
             if step is not None:
@@ -120,7 +129,7 @@ class _Watcher:
         count = int(self.work.state[SEGMENTS])
         segments = tuple(self.work.edge(h) for h in self.parts.edge_of[1 : count + 1].tolist())
         bounds = self.refiner.bounds
-        return Step("start", say_start, added=added, new_points=points, new_segments=segments, bounds=bounds)
+        return Step("start", say_start, added=added, new_points=points, new_segments=segments, bounds=bounds, makes_points=True)
 
     def encroached(self, h: int) -> Step:
         self.edge = self.work.edge(h)
@@ -259,6 +268,7 @@ class _Watcher:
         return {"added": triangles, "removed": before, "new_points": points, "gone_points": gone, "gaps": len(gone)}
 
 
+ABOUT_A_TRIANGLE = (EXCUSED, REFUSED, CAVITY, MOVING)  # the first event that says what becomes of a bad triangle
 TELLERS: dict[int, Callable[[_Watcher, int], Step | None]] = {
     ENCROACHED: _Watcher.encroached,
     CLEARING: _Watcher.clearing,
@@ -266,7 +276,6 @@ TELLERS: dict[int, Callable[[_Watcher, int], Step | None]] = {
     SPLITTING: _Watcher.splitting,
     SPLIT: _Watcher.split,
     FROZEN_WHOLE: _Watcher.whole,
-    TAKEN: _Watcher.taken,
     CAVITY: _Watcher.cavity,
     INSERTED: _Watcher.inserted,
     MOVING: _Watcher.clearing,

@@ -1,8 +1,8 @@
 """What a refinement has still to do: sub-segments to split, first come first served; bad triangles, shortest edge first.
 
-Bad triangles wait in *buckets*, by the power of two (and the quarter of it) of their shortest edge squared. A
-bucket is a list threaded through ``queue``; so a triangle that vanishes leaves it at once, and nothing in it is
-ever stale. Within a bucket: first in, first out.
+Bad triangles wait in *buckets*, by the power of two of their shortest edge squared. A bucket is a list threaded
+through ``queue``; so a triangle that vanishes leaves it at once, and nothing in it is ever stale. Within a
+bucket the last comes first: it lies near the triangle before it, in the plane and in memory.
 """
 
 from __future__ import annotations
@@ -32,11 +32,11 @@ OFF_CURVE = 28  # split points that had to stay on a chord
 BEYOND = 29  # the half-edge of a split sub-segment whose triangle stays, plus 1, or 0
 RELOCATE = 30  # whether vertices are moved where that mends a triangle
 MOVES = 31  # how many were
+TAKEN = 32  # the shortest edge of the bad triangle in hand
 
 NONE = 0  # no triangle, where t + 1 stands for triangle t; no bucket
-STEPS = 4  # buckets to a factor of 2 in the square of a length
 LOWEST_POWER = -300  # squares of lengths between doubles of 2^-142 .. 2^201 stay above and below
-BUCKETS = STEPS * 720
+BUCKETS = 720
 AFTER, BEFORE, BUCKET = 0, 1, 2  # the columns of `queue`, one row a triangle
 FIRST, LAST = 0, 1  # the columns of `bucket`
 NUMBER, STATUS = 0, 1  # the columns of `waiting`: a ring of sub-segments; and the status of each sub-segment
@@ -46,20 +46,19 @@ IDLE, QUEUED, FROZEN = 0, 1, 2  # waits not, waits, cannot be split
 @kernel
 def bucket_of(square):
     """The bucket of a triangle whose shortest edge has this squared length."""
-    fraction, power = math.frexp(square)  # exact: square = fraction x 2^power, fraction in [1/2, 1)
-    return (power - LOWEST_POWER) * STEPS + int((2.0 * fraction - 1.0) * STEPS)
+    return math.frexp(square)[1] - LOWEST_POWER  # the exponent: exact
 
 
 @kernel
 def push_triangle(t, b, queue, bucket, state):
-    """Put triangle ``t`` at the end of bucket ``b``."""
-    end, name = bucket[b, LAST], t + 1
-    queue[t, AFTER], queue[t, BEFORE], queue[t, BUCKET] = NONE, end, b
-    if end == NONE:
-        bucket[b, FIRST] = name
+    """Put triangle ``t`` at the front of bucket ``b``."""
+    front, name = bucket[b, FIRST], t + 1
+    queue[t, AFTER], queue[t, BEFORE], queue[t, BUCKET] = front, NONE, b
+    if front == NONE:
+        bucket[b, LAST] = name
     else:
-        queue[index(end - 1), AFTER] = name
-    bucket[b, LAST] = name
+        queue[index(front - 1), BEFORE] = name
+    bucket[b, FIRST] = name
     state[BAD] += 1
     if b < state[LOWEST]:
         state[LOWEST] = b

@@ -154,7 +154,7 @@ def restore_delaunay(first, last, xy, origin, twin, segment, edge_of, triangles)
         before = flips
         for i in range(3 * first, 3 * last):
             h = index(3 * triangles[i // 3] + i % 3)
-            if is_illegal(h, xy, origin, twin, segment):
+            if h < twin[h] and is_illegal(h, xy, origin, twin, segment):
                 flip_beside_segments(h, origin, twin, segment, edge_of)
                 flips += 1
     return flips

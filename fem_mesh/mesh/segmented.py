@@ -92,9 +92,11 @@ class Segmented:
             along[asked, i] = ((work.xy[pairs[asked, i]] - work.xy[start]) * way).sum(axis=1)
         back = along[:, 0] > along[:, 1]
         pairs[back], along[back] = pairs[back, ::-1], along[back, ::-1]
-        order = np.lexsort((pairs[:, 0], along[:, 0], piece))
-        order = order[asked[order]]
-        return pairs[order], piece[order]
+        if (piece[1:] <= piece[:-1]).any():
+            order = np.lexsort((pairs[:, 0], along[:, 0], piece))
+            pairs, piece = pairs[order], piece[order]
+        first = int(np.searchsorted(piece, 0))  # behind those of NO_PIECE
+        return pairs[first:], piece[first:]
 
     def to_mesh(self, domain: Any = None, refinement: Refinement | None = None, note: str = "") -> Mesh:
         """The mesh that stands in the arrays, under the user's numbers. It takes over their memory."""

@@ -38,7 +38,7 @@ FROM = 8  # the vertex up to which it is there; 0 if it is not begun
 SEGMENTS = 9  # sub-segments
 FLOODED = 10  # triangles that the flood has left
 REACHED = 11  # triangles that it has reached
-SLOTS = 32  # the rest is for algorithms
+SLOTS = 40  # the rest is for algorithms
 
 
 @dataclass

@@ -26,6 +26,10 @@ if TYPE_CHECKING:
 SIZE = (6.4, 5.6)  # inches
 VIEWS = 20  # circles larger than so many views are drawn as an arc
 MOST_NUMBERS = 60  # more points than this go without numbers, unless asked
+MOST_LISTED = 4  # more roles than this are listed in smaller letters
+THINNEST = 1.6  # of the thick lines, in points
+FULL_SIZE = 120  # up to so many vertices have markers of full size
+MOST_MARKED = 1_000  # more vertices than this go without a marker
 MOST_SHOWN = 3_000  # a mesh's picture in a notebook shows a part, beyond so many triangles
 LETTERS_AN_INCH = 10.5  # of caption
 
@@ -75,7 +79,8 @@ def draw_step(
     _polygons(page, everything, step.added if k else (), "new", dark, shown)
     _polygons(page, everything, step.added if not k else (), "mesh", dark, shown, listed=False)
     _edges(page, everything, vanished_edges(step.removed, triangles.tolist()), dark, shown, role="gone", zorder=3.2)
-    _edges(page, everything, trace.segments(k).tolist(), dark, shown, role="segment", zorder=2.9)
+    scale = scale_for(len(points))
+    _edges(page, everything, trace.segments(k).tolist(), dark, shown, role="segment", zorder=2.9, scale=scale)
     _edges(page, everything, step.asked, dark, shown, role="asked", zorder=2.95)
     if circles:
         _circles(page, everything, step.circles, dark, shown)
@@ -84,11 +89,12 @@ def draw_step(
     _edges(page, everything, step.edges, dark, shown)
     there = ~np.isnan(points[:, 0])
     _markers(page, trace.points_to_come(k), "waiting", dark, shown)
-    _markers(page, points[there], "vertex", dark, shown, listed=False)
+    if there.sum() <= MOST_MARKED:
+        _markers(page, points[there], "vertex", dark, shown, listed=False, scale=scale)
     if step.point is not None:
         _markers(page, np.array([step.point]), "point", dark, shown)
     if numbers or (numbers is None and len(everything) <= MOST_NUMBERS):
-        _numbers(page, everything, dark)
+        _numbers(page, points if trace.makes_points else everything, dark)
     if legend:
         _legend(page, shown, dark)
     head = f"step {k} of {len(trace) - 1}, {step.kind}"
@@ -120,11 +126,12 @@ def plot_mesh(
     _draw_mesh(page, mesh.points, mesh.triangles, circles, dark, shown)
     if numbers or (numbers is None and len(mesh.points) <= MOST_NUMBERS):
         _numbers(page, mesh.points, dark)
-    _edges(page, mesh.points, mesh.segments.tolist(), dark, shown, role="segment")
+    _edges(page, mesh.points, mesh.segments.tolist(), dark, shown, role="segment", scale=scale_for(len(mesh.points)))
     if circles and legend:
         _legend(page, shown, dark)
     facts = repr(mesh) if title is None else title
-    _caption(page, facts, "", dark)
+    head, _, rest = facts.partition(": ") if title is None else (facts, "", "")
+    _caption(page, head, rest, dark)
     return page if ax is not None else Picture(page.figure, facts)  # type: ignore[arg-type]
 
 
@@ -146,8 +153,8 @@ def _draw_mesh(page: Axes, points: np.ndarray, triangles: np.ndarray, circles: b
     _polygons(page, points, triangles.tolist(), "mesh", dark, shown)
     if circles:
         _circles(page, points, triangles.tolist(), dark, shown)
-    if len(points) <= MOST_SHOWN:
-        _markers(page, points, "vertex", dark, shown)
+    if len(points) <= MOST_MARKED:
+        _markers(page, points, "vertex", dark, shown, scale=scale_for(len(points)))
 
 
 # ---- the parts ---------------------------------------------------------------------------------------
@@ -193,14 +200,21 @@ def _sides(triangles: Iterable[Any]) -> set[frozenset[int]]:
     return {frozenset(side) for a, b, c in triangles for side in ((a, b), (b, c), (c, a))}
 
 
+def scale_for(n: int) -> float:
+    """How large markers and thick lines are drawn, as a part of their size, among ``n`` vertices."""
+    return min(1.0, math.sqrt(FULL_SIZE / max(n, 1)))
+
+
 def _edges(
-    page: Axes, points: np.ndarray, edges: Iterable[Any], dark: bool, shown: list[str], role: str = "edge", zorder: float = 3.0
-) -> None:
+    page: Axes, points: np.ndarray, edges: Iterable[Any], dark: bool, shown: list[str], role: str = "edge",
+    zorder: float = 3.0, scale: float = 1.0,
+) -> None:  # fmt: skip
     pairs = list(edges)
     if not pairs:
         return
     look = ROLES[role]
-    lines = LineCollection(list(points[np.array(pairs)]), colors=color_of(role, dark), linewidths=look.width, zorder=zorder)
+    lines = LineCollection(list(points[np.array(pairs)]), colors=color_of(role, dark), zorder=zorder)
+    lines.set_linewidth(max(look.width * scale, min(look.width, THINNEST)))
     lines.set_linestyle((0, look.dash) if look.dash else "solid")
     lines.set_capstyle("round" if not look.dash else "butt")
     page.add_collection(lines)
@@ -252,11 +266,14 @@ def _arc(x: float, y: float, radius: float, center: tuple[float, float], reach: 
     return np.asarray(foot + along[:, None] * np.array([-normal[1], normal[0]]) + inward[:, None] * normal)
 
 
-def _markers(page: Axes, points: np.ndarray, name: str, dark: bool, shown: list[str], listed: bool = True) -> None:
+def _markers(
+    page: Axes, points: np.ndarray, name: str, dark: bool, shown: list[str], listed: bool = True, scale: float = 1.0
+) -> None:
     if not len(points):
         return
     hollow = name in ("waiting", "point")
-    page.plot(*points.T, **_marker(name, dark), zorder=5 if hollow else 4)
+    look = _marker(name, dark)
+    page.plot(*points.T, **{**look, "markersize": scale * look["markersize"]}, zorder=5 if hollow else 4)
     if name == "point":
         page.plot(*points.T, marker="o", markersize=3.5, linestyle="none", color=color_of(name, dark), zorder=5)
     if listed:
@@ -294,9 +311,11 @@ def _legend(page: Axes, shown: list[str], dark: bool) -> None:
             line.set_linestyle((0, role.dash) if role.dash else "solid")
             handles.append(line)
     if handles:
+        tight = len(handles) > MOST_LISTED
         page.legend(
             handles=handles, loc="upper center", bbox_to_anchor=(0.5, 0.0), ncols=len(handles), frameon=False,
-            labelcolor=INK[dark], fontsize=10, handlelength=1.6, handletextpad=0.5, columnspacing=1.1, borderaxespad=0.3,
+            labelcolor=INK[dark], fontsize=8 if tight else 10, handlelength=1.2 if tight else 1.6, handletextpad=0.4,
+            columnspacing=0.7 if tight else 1.1, borderaxespad=0.3,
         )  # fmt: skip
 
 
