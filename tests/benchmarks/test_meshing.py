@@ -44,7 +44,7 @@ def test_triangles_needed(line, make, angle):
     ours = f"{len(mesh.triangles):,}" + ("" if mesh.refinement.complete else " (incomplete)")
     peer = f"{theirs:,}" if theirs else f"not in {TIME_LIMIT} s"
     ratio = f"{len(mesh.triangles) / theirs:.2f}" if theirs else ""
-    line(f"triangles, {make.__name__}, {angle} degrees", ours, peer, ratio, "<= 1.0")
+    line(f"triangles, {make.__name__}, {angle} degrees", ours, peer, ratio, "<= 1.0, aim 0.9")
 
 
 ALONE = """
@@ -88,7 +88,7 @@ def test_largest_bound_for_which_all_four_end(line):
     ours = largest(lambda angle: all(ends(make, angle) for make in DOMAINS))
     theirs = largest(lambda angle: all(triangles_of_triangle(make.__name__, angle) for make in DOMAINS))
     line(
-        "largest bound for which all four domains end", f"{ours:.1f}", f"{theirs:.1f}", f"{ours - theirs:+.1f}", ">= Triangle's"
+        "largest bound for which all four domains end", f"{ours:.1f}", f"{theirs:.1f}", f"{ours - theirs:+.1f}", ">= 34.2, aim 36"
     )
 
 
@@ -113,7 +113,7 @@ def test_refinement_by_area_beside_triangle(compare, line, triangles, make, angl
     options = {"min_angle": angle, "max_area": area, "max_points": 4 * triangles}
     what = f"refine, {make.__name__}, {angle} degrees, {triangles:,}"
     rounds = 7 if triangles < 1_000_000 else 3
-    compare(what, lambda: fm.refine(domain, **options), lambda: triangulate(outline, flags), "<= 1.5, aim 1.0", rounds)
+    compare(what, lambda: fm.refine(domain, **options), lambda: triangulate(outline, flags), "<= 0.8, aim 0.6", rounds)
     ours, theirs = len(fm.refine(domain, **options).triangles), len(triangulate(outline, flags)["triangles"])
     line(f"  its triangles, at the same area bound {area:.3g}", f"{ours:,}", f"{theirs:,}", f"{ours / theirs:.2f}", "")
 
@@ -139,7 +139,7 @@ def test_cdt_of_ten_thousand_segments_beside_triangle(compare):
     outline = zigzag(10_000)
     domain = as_domain(outline)
     what = "constrained_delaunay, 10,000 segments"
-    compare(what, lambda: fm.constrained_delaunay(domain), lambda: triangulate(outline, "pQ"), "<= 1.5, aim 1.0")
+    compare(what, lambda: fm.constrained_delaunay(domain), lambda: triangulate(outline, "pQ"), "<= 1.0")
 
 
 def test_domain_and_cdt_of_ten_thousand_segments_beside_triangle(compare):
@@ -162,7 +162,7 @@ def test_recording_the_l_shape_to_five_hundred_triangles(line):
     domain = as_domain(l_shape())
     seconds, trace = min((steps_to(500, domain, 30) for _ in range(3)), key=lambda result: result[0])
     what = f"ruppert recorded, L-shape, 30 degrees, {len(trace.mesh.triangles)} triangles, {len(trace):,} steps"
-    line(what, f"{seconds * 1e3:.0f} ms", "", "", "<= 500 ms")
+    line(what, f"{seconds * 1e3:.0f} ms", "", "", "<= 2 s")
 
 
 # ---- in fresh processes --------------------------------------------------------------------------------
@@ -197,4 +197,4 @@ def peak_memory(triangles, runs=3):
 
 
 def test_peak_memory_of_a_million_triangles(line):
-    line("peak memory, 1,000,000 triangles", f"{peak_memory(1_000_000):.0f} bytes a triangle", "", "", "<= 250")
+    line("peak memory, 1,000,000 triangles", f"{peak_memory(1_000_000):.0f} bytes a triangle", "", "", "<= 400")
