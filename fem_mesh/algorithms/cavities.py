@@ -8,6 +8,7 @@ from fem_mesh.algorithms.encroachment import (
     SHORTEST,
     SPOT_X,
     SPOT_Y,
+    WIDE,
     encroaches,
     is_between,
     is_encroached,
@@ -114,10 +115,11 @@ def dig_point(h, v, xy, origin, twin, segment, limits, cavity, ring, state):
 
 
 @kernel
-def look_around(v, dug, lens, xy, origin, segment, ring, limits, waiting, state):
+def look_around(v, dug, skinny, xy, origin, segment, ring, limits, waiting, state):
     """Let the sub-segments around the cavity that ``v`` encroaches upon, or lies beyond, wait.
 
-    Returns how many do; -1 if there are some, but all are frozen.
+    Returns how many do; -1 if there are some, but all are frozen. Lenses are for skinny triangles. Where only size
+    counts, and at edges that are too long anyway, circles leave fewer vertices to clear when the edge is split.
     """
     hits, frozen = 0, False
     px, py = xy[v, 0], xy[v, 1]
@@ -126,6 +128,7 @@ def look_around(v, dug, lens, xy, origin, segment, ring, limits, waiting, state)
         s = segment[g]
         if s == 0:
             continue
+        lens = skinny and state[LENS] != 0 and squared_length(g, xy, origin) <= limits[WIDE]
         if not is_right_of(g, px, py, xy, origin) or encroaches(v, g, lens, xy, origin, limits):
             if push_segment(s, waiting, state):
                 hits += 1
@@ -188,6 +191,8 @@ def clear_vertex(h, xy, origin, twin, segment, edge_of, place, label, wanted, bo
     for i in range(2):
         free_triangle(cavity[i], origin, twin, state)
     for i in range(2, degree):
+        if state[LABELLED] != 0:
+            label[cavity[i]] = touched(label[cavity[i]], state)
         push_if_bad(cavity[i], xy, origin, label, bounds, wanted, queue, bucket, state)
     free_vertex(v, place, state)
     return degree
@@ -215,9 +220,15 @@ def inherit_labels(dug, twin, label, cavity, ring, state):
     end = len(ring) - 1  # the far end of the ring holds the labels meanwhile
     for i in range(dug + 2):
         g = ring[i]
-        ring[end - i] = label[triangle_of(g if g + 1 == state[BEYOND] else twin[g])]
+        ring[end - i] = touched(label[triangle_of(g if g + 1 == state[BEYOND] else twin[g])], state)
     for i in range(dug + 2):
         label[cavity[i]] = ring[end - i]
+
+
+@kernel
+def touched(row, state):
+    """The label of what is made in place of a triangle: nothing new is left alone (see ``Refiner``)."""
+    return row - state[LABELLED] if row >= 2 * state[LABELLED] else row
 
 
 @inlined_kernel

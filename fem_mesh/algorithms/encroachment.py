@@ -13,7 +13,10 @@ from fem_mesh.predicates import LARGEST, SMALLEST, in_diametral_circle_sign
 LENS_COSINE = 0  # squared cosine of 180 - 2 T degrees, the angle under which a lens is seen; 0 from T = 45 on
 OFFSET = 1  # the farthest Steiner point from the middle of the shortest edge, in lengths of that edge
 SHORTEST = 2  # square of the length below which nothing is split
-SPOT_X, SPOT_Y = 3, 4  # the point of a curve where the next sub-segment is to be split
+SPOT_X, SPOT_Y = 3, 4  # the point of a curve where the next sub-segment is to be split, or where a vertex moves
+COSINE_T, SINE_T = 5, 6  # of the bound on angles, and a little more
+WIDE = 7  # square of the length above which an edge is too long for the sizes asked for
+CORNERS = 8  # from here on: two polygons, see relocation.py
 
 # What `place` holds of a vertex: k + 1 > 0 within segment k of the domain, or one of these
 FREE, CORNER, SHARP = 0, -1, -2  # inserted in the open; given; given, with an angle below 60 degrees

@@ -40,7 +40,8 @@ def refine(
     size : the longest edge: a number, or a function ``size(x, y)`` of arrays that returns an array. No edge of a
         triangle is then longer than ``size`` at its corners and its centroid
     max_points : how many points may be added; by default some times what the sizes need, and at least 100,000
-    where : bool (m,), with a Mesh: only these triangles, and what replaces them, are asked to keep the bounds
+    where : bool (m,), with a Mesh: only these triangles, and what replaces them, are asked to keep the bounds. What
+        else has to change keeps ``min_angle``; all others stay as they are
     encroachment : a segment is split if a vertex lies inside its diametral "circle" (Ruppert), or "lens" (Chew)
     steiner : skinny triangles are mended by their "circumcenter", or by an "offcenter" on the way to it (Uengoer), or
         by "relocation": where no sizes are asked for, a vertex added before is moved if that helps (Erten, Uengoer)

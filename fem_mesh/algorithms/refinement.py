@@ -11,17 +11,20 @@ import numpy as np
 
 from fem_mesh.algorithms.corners import classify_vertices, list_left
 from fem_mesh.algorithms.encroachment import (
+    COSINE_T,
     FIRST_UNUSED,
     LENS_COSINE,
     OFFSET,
     SHARP,
     SHORTEST,
+    SINE_T,
     SPOT_X,
     SPOT_Y,
+    WIDE,
     in_range,
     shell,
 )
-from fem_mesh.algorithms.relocation import COSINE_T, LIMITS, SINE_T
+from fem_mesh.algorithms.relocation import LIMITS
 from fem_mesh.algorithms.steiner import COSINE, MAX_AREA, MAX_EDGE, NO_ANGLE, UNBOUNDED
 from fem_mesh.algorithms.worklists import (
     ADDED,
@@ -30,6 +33,7 @@ from fem_mesh.algorithms.worklists import (
     GIVEN,
     HEAD,
     LABELLED,
+    LEFT,
     LENS,
     LOWEST,
     MOST,
@@ -72,7 +76,11 @@ class Bounds:
 
 @dataclass
 class Refiner:
-    """The arrays of one refinement. ``label`` is a triangle's region, plus the number of regions if it is left alone."""
+    """The arrays of one refinement.
+
+    The ``label`` of a triangle is its region; plus the number of regions, if only its angles count, since it is made in
+    place of one that was to be left alone; plus twice that number, if it is left alone.
+    """
 
     parts: Segmented
     bounds: Bounds
@@ -97,15 +105,16 @@ class Refiner:
     ) -> Refiner:  # fmt: skip
         work = parts.work
         kinds = len(parts.region_names)
-        limit = np.full((2 * kinds, 3), UNBOUNDED)
+        limit = np.full((3 * kinds, 3), UNBOUNDED)  # asked for; changed, so to keep the angles; left alone
         limit[:, COSINE] = NO_ANGLE
         for k in range(kinds):
             region = regions[k - 1] if 0 < k <= len(regions) else None
             limit[k] = row_of_bounds(bounds, region)
+            limit[kinds + k, COSINE] = limit[k, COSINE]
         label = np.zeros(parts.count, np.int32)
         label[: len(parts.region)] = parts.region
         if chosen is not None:
-            label[: len(chosen)] += kinds * ~chosen
+            label[: len(chosen)] += 2 * kinds * ~chosen
         cosine = math.cos(math.radians(bounds.min_angle))
         limits = np.zeros(LIMITS)
         limits[LENS_COSINE] = max(0.0, 2 * cosine * cosine - 1) ** 2
@@ -113,6 +122,7 @@ class Refiner:
         angle = math.radians(bounds.min_angle * (1 + ROUNDING))
         limits[COSINE_T], limits[SINE_T] = math.cos(angle), math.sin(angle)
         extent = float(np.ptp(work.xy[1:], axis=0).max(initial=0.0))
+        limits[WIDE] = min(float(limit[:, MAX_AREA].min()) / EQUILATERAL, float(limit[:, MAX_EDGE].min()))
         limits[SHORTEST] = (SMALLEST_PART * extent) ** 2
         curved = np.zeros(len(parts.ends) + 1, bool)  # the last row is that of NO_PIECE
         curved[list(curves)] = True
@@ -123,7 +133,7 @@ class Refiner:
         )  # fmt: skip
         state = work.state
         state[LENS], state[OFFCENTER], state[RELOCATE] = bounds.lens, bounds.offcenter, bounds.relocate
-        state[LABELLED] = bool(label.any())
+        state[LABELLED] = kinds if label.any() else 0
         state[LOWEST], state[MOST] = BUCKETS - 1, bounds.max_points or 0
         real = ~ghosts_of(work.origin, parts.count) & (label < kinds)
         refiner.expect(areas_of(work.xy[work.origin[: 3 * parts.count].reshape(-1, 3)[real]]), math.inf)
@@ -131,22 +141,28 @@ class Refiner:
         return refiner
 
     def grow(self) -> None:
-        """Give every array room for what is expected, or half as much again. Room that is not used takes no memory."""
+        """Give the arrays that are full room for what is expected, or half as much again. Unused room takes no memory."""
         parts, work = self.parts, self.parts.work
         expected = min(self.expected, 2 * int(work.state[MOST]))
-        triangles = max(int(1.5 * parts.count), int(1.1 * expected)) + 200
-        vertices = max(int(1.5 * int(work.state[NEXT])), triangles // 2) + 100
-        segments = int(1.5 * int(work.state[SEGMENTS])) + 100
-        work.xy, named = longer(work.xy, vertices), len(work.points) + 1
-        work.name = np.concatenate([work.name[:named], np.arange(named - 1, vertices - 1, dtype=np.int32)])
-        self.place = longer(self.place, vertices)
-        work.origin, work.twin, parts.segment = (longer(a, 3 * triangles) for a in (work.origin, work.twin, parts.segment))
-        work.cavity, work.ring = np.empty(triangles + 2, np.uint32), np.empty(3 * triangles + 3, np.uint32)
-        self.label, self.queue = longer(self.label, triangles), longer(self.queue, triangles)
-        if len(self.wanted):
-            self.wanted = longer(self.wanted, triangles)
-        parts.edge_of, parts.piece_of = longer(parts.edge_of, segments), longer(parts.piece_of, segments)
-        self.waiting = lengthen_ring(self.waiting, segments, work.state)
+        count, vertices, segments = parts.count, int(work.state[NEXT]), int(work.state[SEGMENTS])
+        if count + 2 > len(work.cavity) - 2 or len(self.queue) < 3 + count:
+            triangles = max(int(1.5 * count), int(1.1 * expected)) + 200
+            work.origin, work.twin, parts.segment = (
+                longer(array, 3 * triangles) for array in (work.origin, work.twin, parts.segment)
+            )
+            work.cavity, work.ring = np.empty(triangles + 2, np.uint32), np.empty(3 * triangles + 3, np.uint32)
+            self.label, self.queue = longer(self.label, triangles), longer(self.queue, triangles)
+            if len(self.wanted):
+                self.wanted = longer(self.wanted, triangles)
+        if vertices == len(work.xy):
+            more = max(int(1.5 * vertices), int(0.55 * expected)) + 100
+            work.xy, self.place = longer(work.xy, more), longer(self.place, more)
+            named = len(work.points) + 1
+            work.name = np.concatenate([work.name[:named], np.arange(named - 1, more - 1, dtype=np.int32)])
+        if segments + 1 >= len(parts.edge_of):
+            more = max(2 * segments, int(8 * math.sqrt(expected))) + 100
+            parts.edge_of, parts.piece_of = longer(parts.edge_of, more), longer(parts.piece_of, more)
+            self.waiting = lengthen_ring(self.waiting, more, work.state)
 
     def state(self) -> tuple[np.ndarray, ...]:
         """The arrays that ``refine_mesh`` takes."""
@@ -178,7 +194,7 @@ class Refiner:
         """Raise the budget to some times the points that triangles of these areas need, unless the user set it."""
         bounds = self.bounds
         target = np.minimum(bounds.max_area, EQUILATERAL * np.minimum(edge, bounds.max_edge) ** 2)
-        if len(self.limit) > 2:  # regions may ask for less
+        if len(self.limit) > 3:  # regions may ask for less
             target = np.minimum(target, self.limit[:, MAX_AREA].min())
             target = np.minimum(target, EQUILATERAL * self.limit[:, MAX_EDGE].min())
         need = float((areas / target).sum()) / USED
@@ -205,7 +221,8 @@ class Refiner:
         parts, work, bounds = self.parts, self.parts.work, self.bounds
         left, excused = np.empty(parts.count, np.int32), np.empty(parts.count, bool)
         arrays = (work.xy, work.origin, parts.segment, self.place, parts.ends, self.label, self.wanted, self.limit)
-        k = call(list_left, *arrays, parts.count, left, excused, size=parts.count)
+        any_left = self.spent or work.state[LEFT] > 0
+        k = call(list_left, *arrays, parts.count, left, excused, size=parts.count) if any_left else 0
         other = "budget" if self.spent else "precision"
         why = tuple("small input angle" if e else other for e in excused[:k].tolist())
         complete = not self.spent and bool(excused[:k].all())

@@ -7,16 +7,14 @@ two ends be large enough: two half-planes. What all of them leave is convex; its
 
 from __future__ import annotations
 
-from fem_mesh.algorithms.encroachment import FREE, SPOT_X, SPOT_Y, encroaches, in_range
+from fem_mesh.algorithms.encroachment import CORNERS, COSINE_T, FREE, SINE_T, SPOT_X, SPOT_Y, encroaches, in_range
 from fem_mesh.algorithms.steiner import FINE, judge
 from fem_mesh.algorithms.worklists import LENS
 from fem_mesh.kernel import index, kernel
 from fem_mesh.mesh.constrained import dig_from, holds
 from fem_mesh.mesh.halfedge import is_right_of, next_edge, prev_edge, triangle_of
 
-COSINE_T, SINE_T = 5, 6  # in `limits`: of the bound, and a little more
-CORNERS = 7  # in `limits`, from here on: two polygons, of at most MOST_CORNERS corners each
-MOST_CORNERS = 40
+MOST_CORNERS = 40  # of each of the two polygons in `limits`
 MOST_AROUND = 16  # triangles in a star: each adds at most two corners to the four of the box to begin with
 LIMITS = CORNERS + 4 * MOST_CORNERS
 

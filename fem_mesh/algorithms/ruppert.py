@@ -47,7 +47,7 @@ from fem_mesh.algorithms.worklists import (
     GIVEN,
     IDLE,
     INSERTIONS,
-    LENS,
+    LEFT,
     MOST,
     MOVES,
     NONE,
@@ -113,6 +113,7 @@ def refine_mesh(
         verdict, h, square = judge(t, xy, origin, label, bounds, wanted)
         state[TAKEN] = h
         if verdict == SKINNY and is_excused(h, xy, origin, segment, place, ends):
+            state[LEFT] += 1
             yield EXCUSED, h
             continue
         movable = False
@@ -135,16 +136,15 @@ def refine_mesh(
             continue
         v = next_vertex(state)
         dug = dig_point(h, v, xy, origin, twin, segment, limits, cavity, ring, state)
-        if dug == 0:
-            yield REFUSED, h
-            continue
-        yield CAVITY, index(dug)
-        lens = state[LENS] != 0 and verdict == SKINNY  # where only size counts, wide circles leave less to clear
-        hits = look_around(v, dug, lens, xy, origin, segment, ring, limits, waiting, state)
+        hits = -1
+        if dug > 0:
+            yield CAVITY, index(dug)
+            hits = look_around(v, dug, verdict == SKINNY, xy, origin, segment, ring, limits, waiting, state)
         if hits > 0:  # for another try, when they are split
             push_triangle(t, bucket_of(square), queue, bucket, state)
             yield REJECTED, h
         elif hits < 0:
+            state[LEFT] += 1
             yield REFUSED, h
         else:
             take_vertex(v, FREE, place, state)

@@ -8,6 +8,7 @@ from typing import Any
 
 from fem_mesh.algorithms.cavities import next_vertex
 from fem_mesh.algorithms.constrained_delaunay import watched
+from fem_mesh.algorithms.encroachment import is_encroached
 from fem_mesh.algorithms.refine import as_bounds, begin_refinement, refinement_events
 from fem_mesh.algorithms.refinement import Refiner
 from fem_mesh.algorithms.ruppert import (
@@ -109,13 +110,15 @@ class _Watcher:
 
     def steps(self) -> Generator[Step, None, Mesh]:
         yield self.start()
+        before = 0
         for event, where in refinement_events(self.refiner, watched):
-            if event in ABOUT_A_TRIANGLE:
+            if event in ABOUT_A_TRIANGLE and before != CAVITY:
                 yield self.taken(self.work.state.item(TAKEN))
             tell = TELLERS.get(event)
             step = tell(self, where) if tell else None
             if step is not None:
                 yield step
+            before = event
         changes = self.renumbering()
         mesh = self.refiner.finish()
         yield Step("done", say_done, **changes, result=mesh.refinement, m=len(mesh.triangles), angle=mesh.min_angle)
@@ -136,7 +139,8 @@ class _Watcher:
         seen = [(angle_over(self.place(v), *map(self.place, self.edge)), v) for v in self.apexes(h)]
         angle, v = max(seen, default=(0.0, -1))
         cause = self.cause.pop(int(self.parts.segment[h]), None)
-        inside = angle > (180 - 2 * self.refiner.bounds.min_angle if self.refiner.bounds.lens else 90) - 1e-9
+        arrays = map(view, (self.work.xy, self.work.origin, self.work.twin, self.refiner.limits, self.work.state))
+        inside = is_encroached(h, *arrays)
         return Step(
             "encroached", say_encroached, encroached=(self.edge,), doomed=() if inside or not cause else (cause,),
             point=self.place(v) if inside else None, edge=self.edge, v=v, angle=angle, inside=inside, cause=cause,

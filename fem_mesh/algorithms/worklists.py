@@ -26,13 +26,14 @@ UNSIZED = 22  # whether triangles wait for their size
 FRESH = 23  # triangles in `cavity` that were given one, to be judged
 LENS = 24  # whether encroachment is by lenses
 OFFCENTER = 25  # whether Steiner points are off-centers
-LABELLED = 26  # whether triangles have bounds of their own
+LABELLED = 26  # the number of regions, if triangles have bounds of their own; else 0
 GIVEN = 27  # whether `limits` holds the next split point, on a curve
 OFF_CURVE = 28  # split points that had to stay on a chord
 BEYOND = 29  # the half-edge of a split sub-segment whose triangle stays, plus 1, or 0
 RELOCATE = 30  # whether vertices are moved where that mends a triangle
 MOVES = 31  # how many were
 TAKEN = 32  # the shortest edge of the bad triangle in hand
+LEFT = 33  # bad triangles that were left as they are
 
 NONE = 0  # no triangle, where t + 1 stands for triangle t; no bucket
 LOWEST_POWER = -300  # squares of lengths between doubles of 2^-142 .. 2^201 stay above and below
