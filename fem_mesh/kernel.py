@@ -177,7 +177,7 @@ def _types(arguments: tuple[Any, ...]) -> tuple[Any, ...]:
 
 
 def _say_compiling(name: str) -> None:
-    print(f"fem_mesh: compiling {name}, once on this machine (some 10 s) ...", file=sys.stderr, flush=True)
+    print(f"fem_mesh: compiling {name}, once on this machine (some 10 to 30 s) ...", file=sys.stderr, flush=True)
 
 
 def _fingerprint(function: Callable[..., Any]) -> str:

@@ -19,6 +19,7 @@ from fem_mesh.errors import MeshError
 from fem_mesh.mesh.mesh import Mesh
 
 STEEPEST = 60.0  # degrees: no triangle has a larger smallest angle
+PATIENT = 8  # so many triangles may be expected for each point that kernel.run takes for small: this compiles long
 ENCROACHMENTS, STEINER_POINTS = ("lens", "circle"), ("relocation", "offcenter", "circumcenter")
 
 
@@ -89,7 +90,7 @@ def refinement_events(refiner: Refiner, drive: Driver) -> Iterator[tuple[int, in
     work = refiner.parts.work
     while True:
         last = (0, 0)
-        size = max(refiner.expected, len(work.points))
+        size = max(refiner.expected // PATIENT, len(work.points))
         for last in drive(refine_mesh, refiner.state(), size, done=lambda: work.state.item(ADDED)):
             yield last
         if last[0] == FULL:
