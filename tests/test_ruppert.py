@@ -488,3 +488,56 @@ def test_loose_rows_and_bridges_stay_edges():
     for name in ("bridge_from_the_outline_to_a_hole", "open_chains_and_loose_points", "chain_touching_its_own_edge"):
         refined(add(DOMAINS[name](), []), min_angle=28, max_points=3_000)
     refined(rows([*box(0, 0, 9, 9), (3, 3), (6, 3)], [(0, 1), (1, 2), (2, 3), (3, 0), (4, 5)]), min_angle=30)
+
+
+# --- curves, moves, masks ---
+
+
+@pytest.mark.parametrize(
+    "options", [{"min_angle": 30}, {"min_angle": 28, "size": 0.15}, {"min_angle": 25, "steiner": "circumcenter"}]
+)
+@pytest.mark.parametrize("make", [fm.disk, fm.annulus, fm.airfoil, fm.turbine_blade, fm.gear], ids=lambda make: make.__name__)
+def test_curved_shapes_are_refined_like_others(make, options):
+    domain = make()
+    mesh = fm.refine(domain, **options)
+    check.validate_refinement(domain, mesh, min_angle=options["min_angle"], size=options.get("size"))
+    assert mesh.refinement.off_curve == 0
+
+
+def test_new_points_on_the_rim_of_a_disk_lie_on_its_circle_and_the_area_grows_towards_pi():
+    coarse = fm.refine(fm.disk(n=8), min_angle=25)
+    fine = fm.refine(coarse, min_angle=25, size=0.1)  # a mesh remembers its curves
+    for mesh in (coarse, fine):
+        rim = mesh.points[np.unique(mesh.segments)]
+        assert np.abs(np.hypot(*rim.T) - 1).max() < 1e-9
+    assert 0 < np.pi - fine.areas().sum() < 0.01 < np.pi - coarse.areas().sum()
+
+
+def test_a_curve_whose_way_is_not_free_is_left_and_reported():
+    angles = np.radians([0, 50, 100, 150, 200, 250, 300])
+    ring = np.round(np.column_stack([np.cos(angles), np.sin(angles)]) * 2**30) / 2**30
+    bulge = 1 - np.cos(np.radians(25))
+    guard = ring[:2].mean(axis=0) * (1 + 0.6 * bulge)  # a given point between chord and arc
+    domain = fm.Domain(
+        np.concatenate([ring, [guard, guard * 1.5, guard * 1.5 + [0, 0.1]]]),
+        [(i, (i + 1) % 7) for i in range(7)] + [(7, 8), (8, 9), (9, 7)],
+        curves={0: fm.Circle((0, 0), 1)},
+    )
+    mesh = fm.refine(domain, min_angle=20, size=0.3, max_points=3_000)
+    check.check_realisation(mesh)
+    assert mesh.refinement.off_curve > 0
+    assert "left on a chord" in repr(mesh.refinement)
+
+
+@pytest.mark.parametrize("make", [fm.plate_with_hole, fm.airfoil, fm.gear], ids=lambda make: make.__name__)
+def test_moving_vertices_saves_triangles(make):
+    moved, added = (len(fm.refine(make(), min_angle=32, steiner=steiner).triangles) for steiner in ("relocation", "offcenter"))
+    assert moved < 0.9 * added
+
+
+def test_what_changes_beside_a_mask_keeps_the_angles_too():
+    coarse = fm.refine(fm.l_shape(), min_angle=30, max_area=0.05)
+    near = np.hypot(*coarse.points[coarse.triangles].mean(axis=1).T) < 0.5
+    mesh = fm.refine(coarse, min_angle=30, max_area=5e-4, where=near)
+    assert mesh.min_angle >= 30 - 1e-9
+    assert len(mesh.triangles) < len(fm.refine(coarse, min_angle=30, max_area=5e-4).triangles) / 2

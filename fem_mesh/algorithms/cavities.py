@@ -27,6 +27,7 @@ from fem_mesh.algorithms.worklists import (
     LABELLED,
     LENS,
     OFF_CURVE,
+    ON_CURVE,
     STATUS,
     UNSIZED,
     bucket_of,
@@ -144,16 +145,16 @@ def dig_split(h, v, xy, origin, twin, segment, place, limits, cavity, ring, stat
     On the curve, where a point of it was given and the way there is free; else on the chord. Returns the number of
     triangles; 0 if it is not split, since it is too short, or rounding would turn a triangle over.
     """
+    given = state[GIVEN]
+    state[GIVEN] = 0
     if squared_length(h, xy, origin) <= limits[SHORTEST]:
-        state[GIVEN] = 0
         return 0
     dug = 0
-    if state[GIVEN] != 0:
-        state[GIVEN] = 0
+    if given == ON_CURVE:
         xy[v, 0], xy[v, 1] = limits[SPOT_X], limits[SPOT_Y]
         dug = dig_both_sides(h, v, xy, origin, twin, segment, cavity, ring, state)
-        if dug == 0:
-            state[OFF_CURVE] += 1
+    if given != 0 and dug == 0:
+        state[OFF_CURVE] += 1
     if dug == 0:
         place_split_point(v, h, xy, origin, place)
         dug = dig_both_sides(h, v, xy, origin, twin, segment, cavity, ring, state)

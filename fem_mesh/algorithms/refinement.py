@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from fem_mesh.algorithms.corners import classify_vertices, list_left
+from fem_mesh.algorithms.curved import point_on_shell, way_is_free
 from fem_mesh.algorithms.encroachment import (
     COSINE_T,
     FIRST_UNUSED,
@@ -22,7 +23,6 @@ from fem_mesh.algorithms.encroachment import (
     SPOT_Y,
     WIDE,
     in_range,
-    shell,
 )
 from fem_mesh.algorithms.relocation import LIMITS
 from fem_mesh.algorithms.steiner import COSINE, MAX_AREA, MAX_EDGE, NO_ANGLE, UNBOUNDED
@@ -40,6 +40,8 @@ from fem_mesh.algorithms.worklists import (
     NUMBER,
     OFF_CURVE,
     OFFCENTER,
+    ON_CHORD,
+    ON_CURVE,
     RELOCATE,
     UNSIZED,
 )
@@ -214,7 +216,7 @@ class Refiner:
         sharp = self.place[a] == SHARP and self.place[b] != SHARP
         x, y = point_on_shell(self.curves[row], start, end) if sharp else self.curves[row].between(start, end)
         self.limits[SPOT_X], self.limits[SPOT_Y] = in_range(x), in_range(y)
-        work.state[GIVEN] = 1
+        work.state[GIVEN] = ON_CURVE if way_is_free(parts, h, self.limits[[SPOT_X, SPOT_Y]]) else ON_CHORD
 
     def finish(self) -> Mesh:
         """The mesh, with the report of what was achieved."""
@@ -265,20 +267,6 @@ def evaluate_size(size: Size, places: np.ndarray) -> np.ndarray:
     for i in np.flatnonzero(~(values > 0))[:1]:
         raise MeshError(f"size({places[i, 0]:.6g}, {places[i, 1]:.6g}) is {values[i]}: an edge length must be greater than 0")
     return values
-
-
-def point_on_shell(curve: Any, start: tuple[float, float], end: tuple[float, float]) -> tuple[float, float]:
-    """The point of ``curve`` between its points ``start`` and ``end`` whose distance from ``start`` is a power of two."""
-    wanted = shell((end[0] - start[0]) ** 2 + (end[1] - start[1]) ** 2) * math.dist(start, end)
-    low, high = start, end
-    best: tuple[float, float] = curve.between(low, high)
-    for _ in range(60):  # each turn halves the arc, up to the last bit
-        distance = math.dist(start, best)
-        if abs(distance - wanted) <= 2.0**-40 * wanted:
-            break
-        low, high = (best, high) if distance < wanted else (low, best)
-        best = curve.between(low, high)
-    return best
 
 
 def ghosts_of(origin: np.ndarray, count: int) -> np.ndarray:

@@ -88,7 +88,11 @@ def test_largest_bound_for_which_all_four_end(line):
     ours = largest(lambda angle: all(ends(make, angle) for make in DOMAINS))
     theirs = largest(lambda angle: all(triangles_of_triangle(make.__name__, angle) for make in DOMAINS))
     line(
-        "largest bound for which all four domains end", f"{ours:.1f}", f"{theirs:.1f}", f"{ours - theirs:+.1f}", ">= 34.2, aim 36"
+        "largest bound for which all four domains end",
+        f"{ours:.1f}",
+        f"{theirs:.1f}",
+        f"{ours - theirs:+.1f}",
+        ">= 34.2, aim 36",
     )
 
 
