@@ -183,14 +183,15 @@ class Refiner:
         fresh = np.flatnonzero(np.isnan(self.wanted[:count]) & (corner != 0).all(axis=1))
         triangles = work.xy[corner[fresh]]
         places = np.concatenate([triangles, triangles.mean(axis=1, keepdims=True)], axis=1)
-        edge = evaluate_size(size, places.reshape(-1, 2)).reshape(-1, 4).min(axis=1, initial=np.inf)
+        sizes = evaluate_size(size, places.reshape(-1, 2)).reshape(-1, 4)
+        edge = sizes.min(axis=1, initial=np.inf)
         edge[self.label[fresh] >= len(self.parts.region_names)] = np.inf
         self.wanted[fresh] = edge
         sides = triangles - np.roll(triangles, 1, axis=1)
         long = fresh[(sides * sides).sum(axis=2).max(axis=1, initial=0.0) > edge * edge]
         work.cavity[: len(long)] = long
         work.state[FRESH], work.state[UNSIZED] = len(long), 0
-        self.expect(areas_of(triangles), edge)
+        self.expect(areas_of(triangles), (sizes**-2.0).mean(axis=1) ** -0.5)
 
     def expect(self, areas: np.ndarray, edge: np.ndarray | float) -> None:
         """Raise the budget to some times the points that triangles of these areas need, unless the user set it."""
