@@ -18,7 +18,7 @@ from fem_mesh.algorithms.constrained_delaunay import constrained_delaunay, inser
 from fem_mesh.algorithms.delaunay import delaunay
 from fem_mesh.algorithms.lawson import lawson
 from fem_mesh.algorithms.refine import refine
-from fem_mesh.algorithms.ruppert_steps import ruppert
+from fem_mesh.algorithms.refining.watched import ruppert
 from fem_mesh.algorithms.sweep import any_triangulation
 from fem_mesh.domain.curves import Circle, Parametric
 from fem_mesh.domain.domain import Domain

@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 
 from fem_mesh.algorithms.constrained_delaunay import Driver, constrain, drained, triangulate
-from fem_mesh.algorithms.refinement import Bounds, Refiner
-from fem_mesh.algorithms.reopening import reopen
+from fem_mesh.algorithms.refining.refiner import Bounds, Refiner
+from fem_mesh.algorithms.refining.reopening import reopen
+from fem_mesh.algorithms.refining.worklists import ADDED
 from fem_mesh.algorithms.ruppert import FULL, POINT_WANTED, SIZES_WANTED, SPENT, refine_mesh
-from fem_mesh.algorithms.worklists import ADDED
 from fem_mesh.domain.domain import Domain
 from fem_mesh.errors import MeshError
 from fem_mesh.mesh.mesh import Mesh

@@ -21,7 +21,7 @@ the cavity grows from the bad triangle itself, so the point need not be located.
 
 from __future__ import annotations
 
-from fem_mesh.algorithms.cavities import (
+from fem_mesh.algorithms.refining.cavities import (
     clear_vertex,
     dig_point,
     dig_split,
@@ -33,10 +33,20 @@ from fem_mesh.algorithms.cavities import (
     split_segment,
     take_vertex,
 )
-from fem_mesh.algorithms.encroachment import FREE, find_free_vertex_inside, is_encroached
-from fem_mesh.algorithms.relocation import dig_landing, find_movable
-from fem_mesh.algorithms.steiner import COSINE, FINE, MAX_AREA, MAX_EDGE, NO_ANGLE, SKINNY, UNBOUNDED, is_excused, judge
-from fem_mesh.algorithms.worklists import (
+from fem_mesh.algorithms.refining.encroachment import FREE, find_free_vertex_inside, is_encroached
+from fem_mesh.algorithms.refining.relocation import dig_landing, find_movable
+from fem_mesh.algorithms.refining.steiner import (
+    COSINE,
+    FINE,
+    MAX_AREA,
+    MAX_EDGE,
+    NO_ANGLE,
+    SKINNY,
+    UNBOUNDED,
+    is_excused,
+    judge,
+)
+from fem_mesh.algorithms.refining.worklists import (
     ADDED,
     BAD,
     BEGUN,

@@ -7,9 +7,9 @@ two ends be large enough: two half-planes. What all of them leave is convex; its
 
 from __future__ import annotations
 
-from fem_mesh.algorithms.encroachment import CORNERS, COSINE_T, FREE, SINE_T, SPOT_X, SPOT_Y, encroaches, in_range
-from fem_mesh.algorithms.steiner import FINE, judge
-from fem_mesh.algorithms.worklists import LENS
+from fem_mesh.algorithms.refining.encroachment import CORNERS, COSINE_T, FREE, SINE_T, SPOT_X, SPOT_Y, encroaches, in_range
+from fem_mesh.algorithms.refining.steiner import FINE, judge
+from fem_mesh.algorithms.refining.worklists import LENS
 from fem_mesh.kernel import index, kernel
 from fem_mesh.mesh.constrained import dig_from, holds
 from fem_mesh.mesh.halfedge import is_right_of, next_edge, prev_edge, triangle_of

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
-from fem_mesh.algorithms.encroachment import OFFSET, SHARP, SHORTEST, in_range
-from fem_mesh.algorithms.worklists import OFFCENTER
+from fem_mesh.algorithms.refining.encroachment import OFFSET, SHARP, SHORTEST, in_range
+from fem_mesh.algorithms.refining.worklists import OFFCENTER
 from fem_mesh.kernel import index, inlined_kernel, kernel
 from fem_mesh.mesh.halfedge import next_edge, prev_edge
 from fem_mesh.predicates import LARGEST

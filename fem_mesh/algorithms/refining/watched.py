@@ -6,30 +6,9 @@ import math
 from collections.abc import Callable, Generator, Iterable
 from typing import Any
 
-from fem_mesh.algorithms.cavities import next_vertex
 from fem_mesh.algorithms.constrained_delaunay import watched
-from fem_mesh.algorithms.encroachment import is_encroached
 from fem_mesh.algorithms.refine import as_bounds, begin_refinement, refinement_events
-from fem_mesh.algorithms.refinement import Refiner
-from fem_mesh.algorithms.ruppert import (
-    CAVITY,
-    CLEARED,
-    CLEARING,
-    ENCROACHED,
-    EXCUSED,
-    FROZEN_WHOLE,
-    INSERTED,
-    LANDING,
-    LIFTED,
-    MOVED,
-    MOVING,
-    REFUSED,
-    REJECTED,
-    SPENT,
-    SPLIT,
-    SPLITTING,
-)
-from fem_mesh.algorithms.ruppert_captions import (
+from fem_mesh.algorithms.refining.captions import (
     VERDICTS,
     angle_over,
     measures,
@@ -50,8 +29,29 @@ from fem_mesh.algorithms.ruppert_captions import (
     say_taken,
     say_whole,
 )
-from fem_mesh.algorithms.steiner import judge
-from fem_mesh.algorithms.worklists import ADDED, MOST, QUEUED, STATUS, TAKEN
+from fem_mesh.algorithms.refining.cavities import next_vertex
+from fem_mesh.algorithms.refining.encroachment import is_encroached
+from fem_mesh.algorithms.refining.refiner import Refiner
+from fem_mesh.algorithms.refining.steiner import judge
+from fem_mesh.algorithms.refining.worklists import ADDED, MOST, QUEUED, STATUS, TAKEN
+from fem_mesh.algorithms.ruppert import (
+    CAVITY,
+    CLEARED,
+    CLEARING,
+    ENCROACHED,
+    EXCUSED,
+    FROZEN_WHOLE,
+    INSERTED,
+    LANDING,
+    LIFTED,
+    MOVED,
+    MOVING,
+    REFUSED,
+    REJECTED,
+    SPENT,
+    SPLIT,
+    SPLITTING,
+)
 from fem_mesh.domain.domain import Domain
 from fem_mesh.kernel import view
 from fem_mesh.mesh.halfedge import prev_edge

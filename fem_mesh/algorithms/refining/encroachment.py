@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from fem_mesh.algorithms.worklists import GIVEN, LENS
+from fem_mesh.algorithms.refining.worklists import GIVEN, LENS
 from fem_mesh.kernel import kernel
 from fem_mesh.mesh.halfedge import is_ghost, next_edge, prev_edge
 from fem_mesh.predicates import LARGEST, SMALLEST, in_diametral_circle_sign

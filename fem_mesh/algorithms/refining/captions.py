@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from fem_mesh.algorithms.steiner import LARGE, LONG, SKINNY
+from fem_mesh.algorithms.refining.steiner import LARGE, LONG, SKINNY
 from fem_mesh.steps import Step, Triangle, many
 
 VERDICTS = {SKINNY: "skinny", LARGE: "large", LONG: "long"}

@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from fem_mesh.algorithms.corners import classify_vertices, list_left
-from fem_mesh.algorithms.curved import point_on_shell, way_is_free
-from fem_mesh.algorithms.encroachment import (
+from fem_mesh.algorithms.refining.corners import classify_vertices, list_left
+from fem_mesh.algorithms.refining.curved import point_on_shell, way_is_free
+from fem_mesh.algorithms.refining.encroachment import (
     COSINE_T,
     FIRST_UNUSED,
     LENS_COSINE,
@@ -24,9 +24,9 @@ from fem_mesh.algorithms.encroachment import (
     WIDE,
     in_range,
 )
-from fem_mesh.algorithms.relocation import LIMITS
-from fem_mesh.algorithms.steiner import COSINE, MAX_AREA, MAX_EDGE, NO_ANGLE, UNBOUNDED
-from fem_mesh.algorithms.worklists import (
+from fem_mesh.algorithms.refining.relocation import LIMITS
+from fem_mesh.algorithms.refining.steiner import COSINE, MAX_AREA, MAX_EDGE, NO_ANGLE, UNBOUNDED
+from fem_mesh.algorithms.refining.worklists import (
     ADDED,
     BUCKETS,
     FRESH,

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from fem_mesh.algorithms.encroachment import CORNER, SHARP
-from fem_mesh.algorithms.steiner import FINE, SKINNY, is_excused, judge
+from fem_mesh.algorithms.refining.encroachment import CORNER, SHARP
+from fem_mesh.algorithms.refining.steiner import FINE, SKINNY, is_excused, judge
 from fem_mesh.kernel import call, index, kernel
 from fem_mesh.mesh.halfedge import is_ghost_triangle, next_edge, prev_edge
 from fem_mesh.mesh.segmented import Segmented

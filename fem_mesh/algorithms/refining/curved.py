@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from fem_mesh.algorithms.encroachment import shell
+from fem_mesh.algorithms.refining.encroachment import shell
 from fem_mesh.mesh.halfedge import is_ghost_triangle, next_edge
 from fem_mesh.mesh.quality import areas, turns_of
 from fem_mesh.mesh.segmented import Segmented

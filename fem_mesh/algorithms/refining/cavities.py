@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from fem_mesh.algorithms.encroachment import (
+from fem_mesh.algorithms.refining.encroachment import (
     CORNER,
     FIRST_UNUSED,
     SHORTEST,
@@ -15,8 +15,8 @@ from fem_mesh.algorithms.encroachment import (
     place_split_point,
     squared_length,
 )
-from fem_mesh.algorithms.steiner import FINE, judge, place_steiner_point
-from fem_mesh.algorithms.worklists import (
+from fem_mesh.algorithms.refining.steiner import FINE, judge, place_steiner_point
+from fem_mesh.algorithms.refining.worklists import (
     ADDED,
     BEYOND,
     FREE_TRIANGLE,
