@@ -147,6 +147,23 @@ def test_no_array_is_read_out_of_bounds(tmp_path):
     assert checked == run(TRIANGULATE, tmp_path)
 
 
+REFINE = """
+    import numpy as np, fem_mesh as fm
+    from fem_mesh import kernel
+    kernel.SMALL = -1
+    for domain in (fm.plate_with_hole(), fm.airfoil(), fm.cracked_square()):
+        for options in ({"min_angle": 33}, {"min_angle": 28, "size": lambda x, y: 0.1 + 0.05 * abs(x)}):
+            mesh = fm.refine(domain, **options)
+            print(len(mesh.triangles), fm.refine(mesh, max_area=0.01, where=np.arange(len(mesh.triangles)) % 3 == 0))
+"""
+
+
+@pytest.mark.exhaustive
+def test_no_array_is_read_out_of_bounds_by_refinement(tmp_path):
+    checked = run(REFINE, tmp_path, NUMBA_BOUNDSCHECK="1", NUMBA_CACHE_DIR=str(tmp_path / "cache"))
+    assert checked == run(REFINE, tmp_path)
+
+
 EDITED = """
     import sys, numpy as np
     sys.path.insert(0, {folder!r})

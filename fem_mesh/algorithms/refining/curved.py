@@ -14,7 +14,7 @@ from fem_mesh.mesh.segmented import Segmented
 from fem_mesh.mesh.validators import do_cross
 from fem_mesh.mesh.workspace import SEGMENTS
 
-BULGE = 0.14  # a curve that turns by 60 degrees is at most so far from its chord, in lengths of that
+BULGE = 0.29  # a curve that turns by 60 degrees is nowhere farther from its chord, in lengths of that: tan(30) / 2
 HALVINGS = 60  # of an arc, to find a place on it to the last bit
 ALL = np.array([[0, 1, 2]])  # the triangle that three points make
 

@@ -123,7 +123,7 @@ class Refiner:
         limits[OFFSET] = OFFCENTER_SHARE * math.sqrt((1 + cosine) / (1 - cosine)) if cosine < 1 else math.inf
         angle = math.radians(bounds.min_angle * (1 + ROUNDING))
         limits[COSINE_T], limits[SINE_T] = math.cos(angle), math.sin(angle)
-        extent = float(np.ptp(work.xy[1:], axis=0).max(initial=0.0))
+        extent = float(np.ptp(work.xy[1:], axis=0).max()) if len(work.points) else 0.0
         limits[WIDE] = min(float(limit[:, MAX_AREA].min()) / EQUILATERAL, float(limit[:, MAX_EDGE].min()))
         limits[SHORTEST] = (SMALLEST_PART * extent) ** 2
         curved = np.zeros(len(parts.ends) + 1, bool)  # the last row is that of NO_PIECE
@@ -191,7 +191,8 @@ class Refiner:
         long = fresh[(sides * sides).sum(axis=2).max(axis=1, initial=0.0) > edge * edge]
         work.cavity[: len(long)] = long
         work.state[FRESH], work.state[UNSIZED] = len(long), 0
-        self.expect(areas_of(triangles), (sizes**-2.0).mean(axis=1) ** -0.5)
+        with np.errstate(divide="ignore"):  # where any size will do
+            self.expect(areas_of(triangles), (sizes**-2.0).mean(axis=1) ** -0.5)
 
     def expect(self, areas: np.ndarray, edge: np.ndarray | float) -> None:
         """Raise the budget to some times the points that triangles of these areas need, unless the user set it."""
