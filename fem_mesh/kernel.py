@@ -26,12 +26,14 @@ import numpy as np
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 SETTLED = 16  # events from here on leave the arrays whole: a driver may stop after one
+LAST = 64  # events from here on are a generator's last word: the caller has to act, or it is over
 EVENTS_A_CALL = 50_000  # compiled work returns to Python this often, for Ctrl-C and progress
 EVENTS_IN_PYTHON = 30_000  # a run that takes more than these (about a second) is compiled, however small it began
 SMALL = 3_000  # below this size a first call runs in plain Python rather than wait for a compiler
 PATIENCE = 2.0  # seconds of compiling before a line says so
 
 _kernels: list[Callable[..., Any]] = []
+_sources: dict[str, bytes | None] = {}  # of each module that holds kernels, as it was imported
 _inlined: set[Callable[..., Any]] = set()
 _compiled: dict[Callable[..., Any], Any] = {}
 _lock = threading.RLock()
@@ -40,6 +42,7 @@ _lock = threading.RLock()
 def kernel(function: Function) -> Function:
     """Note ``function`` as a kernel: it stays callable as it is, and compiled code may call it too."""
     _kernels.append(function)
+    _note_source(function)
     return function
 
 
@@ -91,7 +94,7 @@ def run(
     last = (0, 0)
     if not worth_compiling(generator, arguments, size):
         for count, last in enumerate(watch(generator, state)):
-            if count >= EVENTS_IN_PYTHON and last[0] >= SETTLED and _numba() is not None:
+            if count >= EVENTS_IN_PYTHON and SETTLED <= last[0] < LAST and _numba() is not None:
                 break  # it was not small after all: compiled code takes over
         else:
             return last
@@ -127,7 +130,7 @@ def compile_driver(generator: Callable[..., Iterator[tuple[int, int]]], state: S
         event, where = 0, 0
         for event, where in generator(*arrays):
             budget -= 1
-            if budget <= 0 and event >= SETTLED:
+            if budget <= 0 and event >= SETTLED and event < LAST:
                 return False, event, where
         return True, event, where
 
@@ -180,17 +183,27 @@ def _say_compiling(name: str) -> None:
     print(f"fem_mesh: compiling {name}, once on this machine (some 10 to 30 s) ...", file=sys.stderr, flush=True)
 
 
+def _note_source(function: Callable[..., Any]) -> None:
+    """Keep the source of the kernel's module as it is now, while it is being imported: it may be edited later."""
+    if function.__module__ not in _sources:
+        try:
+            with open(inspect.getfile(function), "rb") as file:
+                _sources[function.__module__] = file.read()
+        except (OSError, TypeError):  # typed into a notebook
+            _sources[function.__module__] = None
+
+
 def _fingerprint(function: Callable[..., Any]) -> str:
     """A hash of every module that holds kernels: an edited kernel must not meet a cached driver."""
+    _note_source(function)
     digest = hashlib.sha256()
-    modules = {sys.modules[f.__module__] for f in [*_kernels, function] if f.__module__ in sys.modules}
-    for module in sorted(modules, key=lambda module: module.__name__):
-        try:
-            digest.update(inspect.getsource(module).encode())
-        except (OSError, TypeError):  # typed into a notebook: its code must do
-            for f in [*_kernels, function]:
-                if f.__module__ == module.__name__:
-                    digest.update(f.__code__.co_code + repr(f.__code__.co_consts).encode())
+    for name, source in sorted(_sources.items()):
+        if source is not None:
+            digest.update(source)
+            continue
+        for f in [*_kernels, function]:  # their code must do
+            if f.__module__ == name:
+                digest.update(f.__code__.co_code + repr(f.__code__.co_consts).encode())
     return digest.hexdigest()
 
 

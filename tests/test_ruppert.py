@@ -1,5 +1,6 @@
 """Refinement of every domain that broke others: it ends, keeps its bounds, and says truly what it could not keep."""
 
+import pickle
 import warnings
 
 import exact_constrained as check
@@ -541,3 +542,66 @@ def test_what_changes_beside_a_mask_keeps_the_angles_too():
     mesh = fm.refine(coarse, min_angle=30, max_area=5e-4, where=near)
     assert mesh.min_angle >= 30 - 1e-9
     assert len(mesh.triangles) < len(fm.refine(coarse, min_angle=30, max_area=5e-4).triangles) / 2
+
+
+@pytest.mark.parametrize("events", [1, 2, 7])
+def test_refinement_dropped_after_any_settled_event_goes_on_where_it_stopped(events, monkeypatch):
+    domain = fm.plate_with_hole()
+    monkeypatch.setattr(kernel, "SMALL", -1)
+    whole = fm.refine(domain, min_angle=33)
+    monkeypatch.setattr(kernel, "EVENTS_A_CALL", events)
+    assert bits(fm.refine(domain, min_angle=33)) == bits(whole)
+
+
+# --- what a review broke ---
+
+
+def test_a_run_stopped_by_the_budget_lists_the_triangles_that_had_no_size_yet():
+    mesh = fm.refine(fm.square(), size=lambda x, y: 0 * x + 0.05, max_points=120)
+    sides = mesh.points[mesh.triangles] - np.roll(mesh.points[mesh.triangles], 1, axis=1)
+    assert len(mesh.refinement.left) >= (np.hypot(*sides.T).max(axis=0) > 0.05).sum() > 100
+
+
+def test_a_size_that_is_tiny_in_one_spot_takes_no_memory_for_it():
+    mesh = fm.refine(fm.l_shape(), size=lambda x, y: 1e-5 + 0.3 * np.hypot(x, y))
+    assert mesh.refinement.complete
+    assert len(mesh.triangles) < 20_000
+
+
+def test_regions_without_names_are_asked_to_keep_the_bounds_too():
+    square = fm.Mesh([(0, 0), (1, 0), (1, 1), (0, 1)], [(0, 1, 2), (0, 2, 3)], regions=[1, 2])
+    mesh = fm.refine(square, max_area=0.1)
+    assert mesh.areas().max() <= 0.1
+    assert set(mesh.regions.tolist()) == {1, 2}
+
+
+@pytest.mark.parametrize("regions", [[-1, 0], [1], [0.5, 1], [10**6, 0]])
+def test_regions_that_are_no_numbers_of_regions_are_refused(regions):
+    with pytest.raises(fm.MeshError, match="regions"):
+        fm.Mesh([(0, 0), (1, 0), (1, 1), (0, 1)], [(0, 1, 2), (0, 2, 3)], regions=regions)
+
+
+def test_seeds_that_flood_everything_are_refused():
+    with pytest.raises(fm.MeshError, match="not closed"):
+        fm.refine(fm.Domain([(0, 0), (4, 0), (4, 4), (0, 4)], [(0, 1), (1, 2), (2, 3)], holes=[(3, 1)]))
+
+
+@pytest.mark.parametrize("make", [fm.airfoil, fm.turbine_blade, fm.disk], ids=lambda make: make.__name__)
+def test_meshes_of_curved_shapes_can_be_pickled(make):
+    mesh = fm.refine(make(), min_angle=25)
+    assert bits(pickle.loads(pickle.dumps(mesh))) == bits(mesh)
+
+
+def test_captions_say_where_a_segment_is_split():
+    far = fm.Domain.from_loops(np.add([(0, 0), (0.134, 0), (0.134, 0.03), (0, 0.03)], (512700, 5.4e6)))
+    for domain, words in ((far, "in the middle"), (fm.disk(n=8), "on its curve"), (fm.star(), "a power of two")):
+        splits = [step.caption for step in fm.ruppert(domain, min_angle=30, size=0.15) if step.kind == "split"]
+        assert any(words in caption for caption in splits)
+        assert domain is not far or all(words in caption for caption in splits)
+
+
+def test_coordinates_at_the_edge_of_the_exact_range_are_refined_or_left():
+    for scale in (1e-42, 1e-40, 1e58):
+        corners = np.array([(0, 0), (1, 0), (1, 1), (0, 1)]) * scale
+        mesh = fm.refine(fm.Domain.from_loops(corners), min_angle=30, max_area=0.01 * scale * scale, max_points=400)
+        assert len(mesh.triangles) > 100

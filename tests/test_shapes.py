@@ -140,7 +140,7 @@ def test_a_foil_begins_and_ends_on_its_chord_and_is_as_thick_as_its_code_says():
 
 
 def surfaces(code):
-    return shapes._foil_side(code, 1.0), shapes._foil_side(code, -1.0)
+    return shapes._FoilSide(code, 1.0), shapes._FoilSide(code, -1.0)
 
 
 @pytest.mark.parametrize("code", ["2412", "0012", "4415", "6321", "0001"])

@@ -8,12 +8,12 @@ closes a loop changes sides. Ends because each triangle is reached once.
 
 from __future__ import annotations
 
-from fem_mesh.kernel import SETTLED, index, kernel
+from fem_mesh.kernel import LAST, SETTLED, index, kernel
 from fem_mesh.mesh.halfedge import is_ghost_triangle, triangle_of
 from fem_mesh.mesh.workspace import COUNT, FLOODED, REACHED
 
 UNKNOWN, OUTSIDE, INSIDE = 0, 1, 2  # what `side` holds
-CARVED, CONFLICT = SETTLED + 1, SETTLED + 2
+CARVED, CONFLICT = SETTLED + 1, LAST
 BY_PARITY, BY_SEEDS = 1, 2
 
 

@@ -110,6 +110,11 @@ def constrain(domain: Domain, parts: Segmented, drive: Driver) -> Iterator[tuple
     for i in range(len(domain.holes)):
         begin_at_seed(domain, parts, side, i, seeds[i], from_hull)
         yield from carve(domain, parts, parity, side, drive)
+    if len(domain.holes) and not (side[~ghosts(parts)] != OUTSIDE).any():
+        raise MeshError(
+            f"the floods from outside and from {many(len(domain.holes), 'hole seed')} leave no triangle: "
+            "the outline, or that around a hole, is not closed"
+        )
     color_regions(domain, parts, side, seeds[len(domain.holes) :])
     laid = parts.piece_of[1 : work.state[SEGMENTS] + 1]
     kept = side != OUTSIDE

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from fem_mesh.algorithms.constrained_delaunay import Driver, constrain, drained, triangulate
-from fem_mesh.algorithms.refining.refiner import Bounds, Refiner
+from fem_mesh.algorithms.refining.refiner import MOST_EVER, Bounds, Refiner
 from fem_mesh.algorithms.refining.reopening import reopen
 from fem_mesh.algorithms.refining.worklists import ADDED
 from fem_mesh.algorithms.ruppert import FULL, POINT_WANTED, SIZES_WANTED, SPENT, refine_mesh
@@ -114,7 +114,7 @@ def as_bounds(
     if encroachment not in ENCROACHMENTS:
         raise MeshError(f'encroachment must be "lens" or "circle", not {encroachment!r}')
     if steiner not in STEINER_POINTS:
-        raise MeshError(f'steiner must be "offcenter" or "circumcenter", not {steiner!r}')
+        raise MeshError(f'steiner must be "relocation", "offcenter" or "circumcenter", not {steiner!r}')
     whole = isinstance(max_points, int | np.integer) and not isinstance(max_points, bool)
     if max_points is not None and not (whole and max_points >= 0):
         raise MeshError(f"max_points must be a whole number, at least 0, not {max_points!r}")
@@ -125,7 +125,7 @@ def as_bounds(
             raise MeshError(f"{name} must be greater than 0, not {value!r}")
     return Bounds(
         min_angle=angle, max_area=area, max_edge=edge, size=size if callable(size) else None,
-        max_points=None if max_points is None else int(max_points),
+        max_points=None if max_points is None else min(int(max_points), MOST_EVER),
         lens=encroachment == "lens", offcenter=steiner != "circumcenter", relocate=steiner == "relocation",
     )  # fmt: skip
 

@@ -72,13 +72,13 @@ from fem_mesh.algorithms.refining.worklists import (
     push_segment,
     push_triangle,
 )
-from fem_mesh.kernel import SETTLED, index, kernel
+from fem_mesh.kernel import LAST, SETTLED, index, kernel
 from fem_mesh.mesh.halfedge import triangle_of
 from fem_mesh.mesh.workspace import COUNT, NEXT, SEGMENTS
 
-ENCROACHED, SPLITTING, CLEARING, CAVITY, MOVING, LANDING = 1, 2, 3, 4, 5, 6
-SPLIT, FROZEN_WHOLE, CLEARED, INSERTED, REJECTED, EXCUSED, REFUSED, LIFTED, MOVED = (SETTLED + i for i in range(1, 10))
-FULL, SPENT, SIZES_WANTED, POINT_WANTED = (SETTLED + i for i in range(10, 14))  # the last event: the caller has to act
+ENCROACHED, SPLITTING, CLEARING, CAVITY, MOVING, LIFTED, LANDING = range(1, 8)
+SPLIT, FROZEN_WHOLE, CLEARED, INSERTED, REJECTED, EXCUSED, REFUSED, MOVED = (SETTLED + i for i in range(1, 9))
+FULL, SPENT, SIZES_WANTED, POINT_WANTED = range(LAST, LAST + 4)  # the last event: the caller has to act
 
 
 @kernel

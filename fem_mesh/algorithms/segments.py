@@ -15,14 +15,14 @@ Ends because each turn reaches a further vertex of a segment, and each triangle 
 
 from __future__ import annotations
 
-from fem_mesh.kernel import SETTLED, index, kernel
+from fem_mesh.kernel import LAST, SETTLED, index, kernel
 from fem_mesh.mesh.constrained import mark
 from fem_mesh.mesh.halfedge import is_ghost, link, next_edge, place_triangle, prev_edge, triangle_of
 from fem_mesh.mesh.workspace import FROM, PIECE, SEGMENTS
 from fem_mesh.predicates import in_circle_sign, in_diametral_circle_sign, orient_sign
 
 ALONG, CROSSED = 1, 2
-LAID, BLOCKED = SETTLED + 1, SETTLED + 2
+LAID, BLOCKED = SETTLED + 1, LAST
 
 
 @kernel
@@ -125,7 +125,7 @@ def collect_crossed(h, u, v, xy, origin, twin, segment, cavity):
 
 @kernel
 def first_of_chains(cavity):
-    """Where the room for chains begins: behind the half-edges of all triangles (see ``with_room_for_chains``)."""
+    """Where the room for chains begins: behind the half-edges of all triangles (see ``Workspace.of_points``)."""
     return index(3 * (len(cavity) - 2))
 
 

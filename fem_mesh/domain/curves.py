@@ -159,7 +159,7 @@ def halve(curve: Any, a: Point, b: Point) -> tuple[Point, Any, Any]:
     if hasattr(curve, "halves"):
         middle, before, after = curve.halves()
         return middle, before, after
-    return _pair(curve.between(a, b)), curve, curve
+    return as_pair(curve.between(a, b)), curve, curve
 
 
 def turns_little(points: list[Point]) -> bool:
@@ -182,17 +182,18 @@ def turns_little(points: list[Point]) -> bool:
 def _samples(curve: Any, a: Point, b: Point, n: int) -> list[Point]:
     if n == 1:
         return [a, b]
-    middle = _pair(curve.between(a, b))
+    middle = as_pair(curve.between(a, b))
     return [*_samples(curve, a, middle, n // 2)[:-1], *_samples(curve, middle, b, n // 2)]
 
 
-def _pair(point: Any) -> Point:
+def as_pair(point: Any) -> Point:
+    """What a curve's ``between`` returned, as a pair of finite numbers."""
     try:
         x, y = (float(v) for v in point)
     except (TypeError, ValueError):
-        raise MeshError(f"has a curve whose between(a, b) returns {point!r}, not a pair (x, y)") from None
+        raise MeshError(f"a segment has a curve whose between(a, b) returns {point!r}, not a pair (x, y)") from None
     if not (abs(x) <= LARGEST and abs(y) <= LARGEST):
-        raise MeshError(f"has a curve whose between(a, b) returns ({x}, {y}), which is not finite")
+        raise MeshError(f"a segment has a curve whose between(a, b) returns ({x}, {y}), which is not finite")
     return x, y
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -170,7 +170,7 @@ def airfoil(code: str = "2412", n: int = 64, box: tuple[float, float, float, flo
     _check_count(n, 8, "n")
     if n % 2:
         raise MeshError(f"an airfoil has as many chords above as below: n = {n} must be even")
-    upper, lower = _foil_side(code, 1.0), _foil_side(code, -1.0)
+    upper, lower = _FoilSide(code, 1.0), _FoilSide(code, -1.0)
     s = _round(np.sin(np.pi / 2 * np.linspace(0, 1, n // 2 + 1)))
     pieces = [Parametric(upper, b, a) for a, b in zip(s[-2::-1].tolist(), s[:0:-1].tolist(), strict=True)]
     pieces += [Parametric(lower, a, b) for a, b in zip(s[:-1].tolist(), s[1:].tolist(), strict=True)]
@@ -182,12 +182,16 @@ def airfoil(code: str = "2412", n: int = 64, box: tuple[float, float, float, flo
     return _domain(_box(left, right, bottom, top, ["outer"] * 4), (foil, ["airfoil"] * n, pieces))
 
 
-def _foil_side(code: str, side: float) -> Callable[[float], tuple[float, float]]:
+@dataclass(frozen=True)
+class _FoilSide:
     """One surface of a NACA foil as a function of sqrt(x): side 1 is the upper one, -1 the lower."""
-    camber, place, thickness = int(code[0]) / 100, int(code[1]) / 10, int(code[2:]) / 100
 
-    def surface(s: float) -> tuple[float, float]:
-        x = s * s
+    code: str
+    side: float
+
+    def __call__(self, s: float) -> tuple[float, float]:
+        code, side, x = self.code, self.side, s * s
+        camber, place, thickness = int(code[0]) / 100, int(code[1]) / 10, int(code[2:]) / 100
         half = 5 * thickness * (0.2969 * s + x * (-0.1260 + x * (-0.3516 + x * (0.2843 - x * 0.1036))))
         height, slope = 0.0, 0.0
         if camber:
@@ -196,8 +200,6 @@ def _foil_side(code: str, side: float) -> Callable[[float], tuple[float, float]]
             slope = 2 * camber / (part * part) * (place - x)
         length = math.sqrt(1 + slope * slope)
         return x - side * half * slope / length, height + side * half / length
-
-    return surface
 
 
 BLADE = (  # name, chords of forty and the fewest, control points of a cubic: counter-clockwise from the trailing edge
@@ -220,7 +222,7 @@ def turbine_blade(n: int = 40) -> Domain:
     _check_count(n, 14, "n")
     points, names, curves = [], [], []
     for name, share, fewest, control in BLADE:
-        cubic, pieces = _cubic(control), max(fewest, round(share * n / 40))
+        cubic, pieces = _Cubic(control), max(fewest, round(share * n / 40))
         stops = [i / pieces for i in range(pieces + 1)]
         for a, b in itertools.pairwise(stops):
             points.append(cubic(a))
@@ -229,17 +231,18 @@ def turbine_blade(n: int = 40) -> Domain:
     return _domain((_round(np.array(points)), names, curves))
 
 
-def _cubic(control: Any) -> Callable[[float], tuple[float, float]]:
+@dataclass(frozen=True)
+class _Cubic:
     """The cubic of four control points (Bezier, de Casteljau)."""
 
-    def curve(t: float) -> tuple[float, float]:
+    control: Any
+
+    def __call__(self, t: float) -> tuple[float, float]:
         x, y = (
             (1 - t) * (1 - t) * ((1 - t) * p + 3 * t * q) + t * t * (3 * (1 - t) * r + t * s)
-            for p, q, r, s in zip(*control, strict=True)
+            for p, q, r, s in zip(*self.control, strict=True)
         )
         return x, y
-
-    return curve
 
 
 # ---- parts -------------------------------------------------------------------------------------------

@@ -44,6 +44,9 @@ class Refinement:
         return "Refinement: " + ", ".join(facts)
 
 
+MOST_REGIONS = 65_536  # numbers of regions stay below this
+
+
 class Mesh:
     """A triangle mesh. Its arrays are read-only; the points keep the user's numbering.
 
@@ -100,13 +103,14 @@ class Mesh:
         neighbors = np.where(twins < 0, -1, twins // 3)[:, [1, 2, 0]].astype(np.int32)
         segments = np.array([] if segments is None else segments, np.int32).reshape(-1, 2)
         validators.check_segments(points, triangles, segments)
+        k, m = len(segments), len(triangles)
+        rows = {name: _rows(rows, k, f"boundaries[{name!r}]") for name, rows in (boundaries or {}).items()}
+        numbers = None if regions is None else _rows(regions, MOST_REGIONS, "regions", m)
         self._fill(
             points, triangles, neighbors,
             segments=segments,
-            segment_of=None if segment_of is None else np.array(segment_of, np.int32),
-            boundaries={name: np.array(rows, np.int32) for name, rows in (boundaries or {}).items()},
-            regions=None if regions is None else np.array(regions, np.int32),
-            region_names=tuple(region_names), note=note,
+            segment_of=None if segment_of is None else _rows(segment_of, 2**31 - 1, "segment_of", k, lowest=-1),
+            boundaries=rows, regions=numbers, region_names=tuple(region_names), note=note,
         )  # fmt: skip
 
     @classmethod
@@ -282,6 +286,18 @@ class Mesh:
         from fem_mesh.watch.draw import picture_of_mesh
 
         return picture_of_mesh(self)._repr_mimebundle_()
+
+
+def _rows(given: Any, n: int, what: str, length: int | None = None, lowest: int = 0) -> np.ndarray:
+    """``given`` as int32 numbers from ``lowest`` to below ``n``, as many as ``length`` says."""
+    array = np.asarray(given)
+    if array.size == 0:
+        array = np.empty(0, np.int32)
+    if array.dtype.kind not in "iu" or array.ndim != 1 or length not in (None, len(array)):
+        raise MeshError(f"{what} must be {'' if length is None else f'{length} '}whole numbers, not {given!r:.80}")
+    for i in np.flatnonzero((array < lowest) | (array >= n))[:1]:
+        raise MeshError(f"{what} holds {array[i]} at place {i}: numbers there go from {lowest} to {n - 1}")
+    return array.astype(np.int32)
 
 
 def _sealed(array: np.ndarray) -> np.ndarray:

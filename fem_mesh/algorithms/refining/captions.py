@@ -41,10 +41,10 @@ def say_clear(step: Step) -> str:
 def say_split(step: Step) -> str:
     (a, b), v, part = step.facts["edge"], step.facts["v"], step.facts["part"]
     where = "in the middle"
-    if step.facts["off"] > 1e-9:
+    if step.facts["on_curve"]:
         where = "on its curve"
-    elif abs(part - 0.5) > 1e-9:
-        corner, length = (a, part) if abs(math.log2(part * step.facts["size"]) % 1 - 0.5) > 0.499999 else (b, 1 - part)
+    elif sum(step.facts["sharp"]) == 1:
+        corner, length = (a, part) if step.facts["sharp"][0] else (b, 1 - part)
         where = f"at the distance {length * step.facts['size']:.4g}, a power of two, from its sharp corner {corner}"
     return f"sub-segment {min(a, b)}-{max(a, b)} is split {where}, at the new vertex {v}: {change(step)}"
 
@@ -119,12 +119,6 @@ def angle_over(p: tuple[float, float], a: tuple[float, float], b: tuple[float, f
     """The angle under which ``p`` sees ab, in degrees."""
     (ux, uy), (vx, vy) = ((q[0] - p[0], q[1] - p[1]) for q in (a, b))
     return math.degrees(math.atan2(abs(ux * vy - uy * vx), ux * vx + uy * vy))
-
-
-def off_chord(p: tuple[float, float], a: tuple[float, float], b: tuple[float, float]) -> float:
-    """How far ``p`` is from the line ab, as a part of ab."""
-    (ux, uy), (vx, vy) = ((q[0] - a[0], q[1] - a[1]) for q in (p, b))
-    return abs(ux * vy - uy * vx) / (vx * vx + vy * vy)
 
 
 def measures(corners: list[tuple[float, float]]) -> dict[str, float]:

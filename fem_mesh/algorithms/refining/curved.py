@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from fem_mesh.algorithms.refining.encroachment import shell
+from fem_mesh.domain.curves import as_pair
 from fem_mesh.mesh.halfedge import is_ghost_triangle, next_edge
 from fem_mesh.mesh.quality import areas, turns_of
 from fem_mesh.mesh.segmented import Segmented
@@ -23,13 +24,13 @@ def point_on_shell(curve: Any, start: tuple[float, float], end: tuple[float, flo
     """The point of ``curve`` between its points ``start`` and ``end`` whose distance from ``start`` is a power of two."""
     wanted = shell((end[0] - start[0]) ** 2 + (end[1] - start[1]) ** 2) * math.dist(start, end)
     low, high = start, end
-    best: tuple[float, float] = curve.between(low, high)
+    best = as_pair(curve.between(low, high))
     for _ in range(HALVINGS):
         distance = math.dist(start, best)
         if abs(distance - wanted) <= 2.0**-40 * wanted:
             break
         low, high = (best, high) if distance < wanted else (low, best)
-        best = curve.between(low, high)
+        best = as_pair(curve.between(low, high))
     return best
 
 

@@ -45,6 +45,7 @@ from fem_mesh.algorithms.refining.worklists import (
     RELOCATE,
     UNSIZED,
 )
+from fem_mesh.domain.curves import as_pair
 from fem_mesh.errors import MeshError
 from fem_mesh.kernel import call
 from fem_mesh.mesh.halfedge import GHOST, next_edge
@@ -58,6 +59,8 @@ ROUNDING = 1e-9  # moved vertices keep the bound by so much more
 SMALLEST_PART = 2.0**-40  # of the domain's size: no edge shorter than this is split
 FEWEST = 100_000  # points that a refinement without a budget may always add
 SPARE = 4  # times as many as it is expected to need
+AT_ONCE = 2_000_000  # triangles to make room for, however many are expected
+MOST_EVER = 200_000_000  # points: half-edges are numbered by 32 bits
 EQUILATERAL = math.sqrt(3) / 4  # area over squared edge
 USED = 0.6  # of a bound on areas and edges is what triangles use on average, roughly
 
@@ -80,7 +83,7 @@ class Bounds:
 class Refiner:
     """The arrays of one refinement.
 
-    The ``label`` of a triangle is its region; plus the number of regions, if only its angles count, since it is made in
+    The ``label`` of a triangle is its region; plus ``len(parts.region_names)``, if only its angles count, since it is made in
     place of one that was to be left alone; plus twice that number, if it is left alone.
     """
 
@@ -138,14 +141,14 @@ class Refiner:
         state[LABELLED] = kinds if label.any() else 0
         state[LOWEST], state[MOST] = BUCKETS - 1, bounds.max_points or 0
         real = ~ghosts_of(work.origin, parts.count) & (label < kinds)
-        refiner.expect(areas_of(work.xy[work.origin[: 3 * parts.count].reshape(-1, 3)[real]]), math.inf)
+        refiner.expect(np.flatnonzero(real), math.inf)
         refiner.grow()
         return refiner
 
     def grow(self) -> None:
         """Give the arrays that are full room for what is expected, or half as much again. Unused room takes no memory."""
         parts, work = self.parts, self.parts.work
-        expected = min(self.expected, 2 * int(work.state[MOST]))
+        expected = min(self.expected, 2 * int(work.state[MOST]), max(4 * parts.count, AT_ONCE))
         count, vertices, segments = parts.count, int(work.state[NEXT]), int(work.state[SEGMENTS])
         if count + 2 > len(work.cavity) - 2 or len(self.queue) < 3 + count:
             triangles = max(int(1.5 * count), int(1.1 * expected)) + 200
@@ -188,23 +191,24 @@ class Refiner:
         edge[self.label[fresh] >= len(self.parts.region_names)] = np.inf
         self.wanted[fresh] = edge
         sides = triangles - np.roll(triangles, 1, axis=1)
-        long = fresh[(sides * sides).sum(axis=2).max(axis=1, initial=0.0) > edge * edge]
+        with np.errstate(over="ignore"):
+            long = fresh[(sides * sides).sum(axis=2).max(axis=1, initial=0.0) > edge * edge]
         work.cavity[: len(long)] = long
         work.state[FRESH], work.state[UNSIZED] = len(long), 0
-        with np.errstate(divide="ignore"):  # where any size will do
-            self.expect(areas_of(triangles), (sizes**-2.0).mean(axis=1) ** -0.5)
+        with np.errstate(all="ignore"):  # sizes may be infinite
+            average = (sizes**-2.0).mean(axis=1) ** -0.5
+        self.expect(fresh, average)
 
-    def expect(self, areas: np.ndarray, edge: np.ndarray | float) -> None:
-        """Raise the budget to some times the points that triangles of these areas need, unless the user set it."""
-        bounds = self.bounds
-        target = np.minimum(bounds.max_area, EQUILATERAL * np.minimum(edge, bounds.max_edge) ** 2)
-        if len(self.limit) > 3:  # regions may ask for less
-            target = np.minimum(target, self.limit[:, MAX_AREA].min())
-            target = np.minimum(target, EQUILATERAL * self.limit[:, MAX_EDGE].min())
-        need = float((areas / target).sum()) / USED
-        self.expected = max(self.expected, int(min(need, 1e12)))
-        if bounds.max_points is None:
-            self.parts.work.state[MOST] = max(FEWEST, SPARE * self.expected // 2)
+    def expect(self, triangles: np.ndarray, edge: np.ndarray | float) -> None:
+        """Raise the budget to some times the points that these triangles need, unless the user set it."""
+        work, row = self.parts.work, self.label[triangles]
+        areas = areas_of(work.xy[work.origin[: 3 * self.parts.count].reshape(-1, 3)[triangles]])
+        with np.errstate(all="ignore"):  # bounds may be infinite, and their squares
+            square = np.minimum(np.square(edge), self.limit[row, MAX_EDGE])
+            need = float((areas / np.minimum(self.limit[row, MAX_AREA], EQUILATERAL * square)).sum()) / USED
+        self.expected = max(self.expected, int(min(need, MOST_EVER)))
+        if self.bounds.max_points is None:
+            self.parts.work.state[MOST] = min(MOST_EVER, max(FEWEST, SPARE * self.expected // 2))
 
     def split_on_curve(self) -> None:
         """Find the point of a curve at which the next sub-segment is to be split."""
@@ -216,26 +220,28 @@ class Refiner:
             a, b = b, a
         start, end = tuple(work.xy[a].tolist()), tuple(work.xy[b].tolist())
         sharp = self.place[a] == SHARP and self.place[b] != SHARP
-        x, y = point_on_shell(self.curves[row], start, end) if sharp else self.curves[row].between(start, end)
+        x, y = point_on_shell(self.curves[row], start, end) if sharp else as_pair(self.curves[row].between(start, end))
         self.limits[SPOT_X], self.limits[SPOT_Y] = in_range(x), in_range(y)
         work.state[GIVEN] = ON_CURVE if way_is_free(parts, h, self.limits[[SPOT_X, SPOT_Y]]) else ON_CHORD
 
     def finish(self) -> Mesh:
         """The mesh, with the report of what was achieved."""
         parts, work, bounds = self.parts, self.parts.work, self.bounds
+        if work.state[UNSIZED]:
+            self.size_triangles()
         left, excused = np.empty(parts.count, np.int32), np.empty(parts.count, bool)
         arrays = (work.xy, work.origin, parts.segment, self.place, parts.ends, self.label, self.wanted, self.limit)
         any_left = self.spent or work.state[LEFT] > 0
         k = call(list_left, *arrays, parts.count, left, excused, size=parts.count) if any_left else 0
         other = "budget" if self.spent else "precision"
         why = tuple("small input angle" if e else other for e in excused[:k].tolist())
-        complete = not self.spent and bool(excused[:k].all())
+        complete = bool(excused[:k].all())
         number = np.cumsum(~ghosts_of(work.origin, parts.count)) - 1
         refinement = Refinement(
             complete=complete, added=int(work.state[ADDED]), left=number[left[:k]].astype(np.int32), why=why,
             off_curve=int(work.state[OFF_CURVE]), min_angle=bounds.min_angle,
         )  # fmt: skip
-        note = "" if complete else f"not refined to the end ({other}): {k:,} triangle{'s' * (k != 1)} left"
+        note = work.note if complete else f"not refined to the end ({other}): {k:,} triangle{'s' * (k != 1)} left"
         parts.region = self.label % len(parts.region_names)
         self.name_new_vertices()
         return parts.to_mesh(self.domain, refinement, note)

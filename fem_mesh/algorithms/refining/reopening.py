@@ -29,12 +29,13 @@ def reopen(mesh: Mesh, chosen: np.ndarray | None = None) -> tuple[Segmented, np.
     work = Workspace._with_room(points.copy(), name, xy)
     work.merged[1:] = mesh.merged_into + 1
     work.state[NEXT] = n + 1
-    work.note = "" if len(triangles) else mesh.note
+    work.note = mesh.note if mesh.refinement is None or not len(triangles) else ""
     ends, names, piece_of_row = chains_of(mesh)
     segment, piece_of = mark_edges(mesh, twins, piece_of_row)
     parts = Segmented(
         work, ends + 1, segment=np.empty(0, np.uint32), edge_of=np.empty(0, np.uint32), piece_of=piece_of,
-        region=mesh.regions.astype(np.int32), names=names, region_names=mesh.region_names,
+        region=mesh.regions.astype(np.int32), names=names,
+        region_names=mesh.region_names + ("",) * (int(mesh.regions.max(initial=0)) + 1 - len(mesh.region_names)),
     )  # fmt: skip
     parts.rebuild(triangles.ravel() + 1, twins.ravel(), segment)
     m = len(triangles)

@@ -6,13 +6,14 @@ import math
 from collections.abc import Callable, Generator, Iterable
 from typing import Any
 
+import numpy as np
+
 from fem_mesh.algorithms.constrained_delaunay import watched
 from fem_mesh.algorithms.refine import as_bounds, begin_refinement, refinement_events
 from fem_mesh.algorithms.refining.captions import (
     VERDICTS,
     angle_over,
     measures,
-    off_chord,
     say_clear,
     say_done,
     say_encroached,
@@ -30,10 +31,10 @@ from fem_mesh.algorithms.refining.captions import (
     say_whole,
 )
 from fem_mesh.algorithms.refining.cavities import next_vertex
-from fem_mesh.algorithms.refining.encroachment import is_encroached
+from fem_mesh.algorithms.refining.encroachment import SHARP, is_encroached
 from fem_mesh.algorithms.refining.refiner import Refiner
 from fem_mesh.algorithms.refining.steiner import judge
-from fem_mesh.algorithms.refining.worklists import ADDED, MOST, QUEUED, STATUS, TAKEN
+from fem_mesh.algorithms.refining.worklists import ADDED, MOST, OFF_CURVE, QUEUED, STATUS, TAKEN
 from fem_mesh.algorithms.ruppert import (
     CAVITY,
     CLEARED,
@@ -107,6 +108,8 @@ class _Watcher:
         self.cause: dict[int, Triangle] = {}  # the bad triangle whose Steiner point encroached upon each sub-segment
         self.vertex = -1  # the one to be cleared
         self.dug = 0  # triangles in the cavity, ghosts among them
+        self.curved = self.on_curve = False  # the sub-segment has a curve; is split on it
+        self.off = 0  # split points off their curve, so far
 
     def steps(self) -> Generator[Step, None, Mesh]:
         yield self.start()
@@ -136,6 +139,7 @@ class _Watcher:
 
     def encroached(self, h: int) -> Step:
         self.edge = self.work.edge(h)
+        self.curved = bool(self.refiner.curved[self.parts.piece_of[self.parts.segment[h]]])
         seen = [(angle_over(self.place(v), *map(self.place, self.edge)), v) for v in self.apexes(h)]
         angle, v = max(seen, default=(0.0, -1))
         cause = self.cause.pop(int(self.parts.segment[h]), None)
@@ -164,6 +168,9 @@ class _Watcher:
         )  # fmt: skip
 
     def splitting(self, dug: int) -> None:
+        off = int(self.work.state[OFF_CURVE])
+        self.on_curve = self.curved and off == self.off
+        self.off = off
         self.dug, self.doomed = dug, self.listed(range(dug))
 
     def split(self, v: int) -> Step:
@@ -173,7 +180,8 @@ class _Watcher:
         return Step(
             "split", say_split, added=added, removed=self.doomed, new_points=((name, *point),), point=point,
             gone_segments=(self.edge,), new_segments=((a, name), (name, b)), edge=self.edge, v=name,
-            part=math.dist(ends[0], point) / math.dist(*ends), off=off_chord(point, *ends), size=math.dist(*ends),
+            part=math.dist(ends[0], point) / math.dist(*ends), size=math.dist(*ends), on_curve=self.on_curve,
+            sharp=[self.is_sharp(name) for name in self.edge],
         )  # fmt: skip
 
     def whole(self, h: int) -> Step:
@@ -245,6 +253,11 @@ class _Watcher:
         n = len(self.work.points)
         return (self.work.points.item(name, 0), self.work.points.item(name, 1)) if name < n else self.at(name + 1)
 
+    def is_sharp(self, name: int) -> bool:
+        """Whether this point is a corner of less than 60 degrees."""
+        n = len(self.work.points)
+        return name < n and bool(self.refiner.place[int(np.flatnonzero(self.work.name[: n + 1] == name)[0])] == SHARP)
+
     def at(self, v: int) -> tuple[float, float]:
         return self.work.xy.item(v, 0), self.work.xy.item(v, 1)
 
@@ -264,11 +277,12 @@ class _Watcher:
         self.refiner.name_new_vertices()
         moved = {int(old): int(new) for old, new in zip(names, work.name, strict=False) if new >= 0 and old != new}
         where = {int(name): v for v, name in enumerate(work.name.tolist()) if name >= 0}
-        triangles = [t for t in map(work.corners, range(self.parts.count)) if t and set(moved.values()) & set(t)]
-        old = {new: o for o, new in moved.items()}
+        new = set(moved.values())
+        triangles = [t for t in map(work.corners, range(self.parts.count)) if t and not new.isdisjoint(t)]
+        old = {now: before for before, now in moved.items()}
         before = tuple(tuple(old.get(v, v) for v in t) for t in triangles)
-        points = [(new, *self.at(where[new])) for new in moved.values()]
-        gone = [v for v in moved if v not in set(moved.values())]
+        points = [(v, *self.at(where[v])) for v in moved.values()]
+        gone = [v for v in moved if v not in new]
         return {"added": triangles, "removed": before, "new_points": points, "gone_points": gone, "gaps": len(gone)}
 
 

@@ -36,8 +36,8 @@ TAKEN = 32  # the shortest edge of the bad triangle in hand
 LEFT = 33  # bad triangles that were left as they are
 
 NONE = 0  # no triangle, where t + 1 stands for triangle t; no bucket
-LOWEST_POWER = -300  # squares of lengths between doubles of 2^-142 .. 2^201 stay above and below
-BUCKETS = 720
+LOWEST_POWER = -400  # differences of doubles within 2^-142 .. 2^201 lie within 2^-194 .. 2^202, or are 0
+BUCKETS = 820
 AFTER, BEFORE, BUCKET = 0, 1, 2  # the columns of `queue`, one row a triangle
 ON_CURVE, ON_CHORD = 1, 2  # what GIVEN says: at the spot in `limits`; as if it were straight
 FIRST, LAST = 0, 1  # the columns of `bucket`
