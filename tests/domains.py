@@ -110,7 +110,7 @@ def over_seeds(few: int, many: int) -> Callable[[Callable[[int], None]], Callabl
             for seed in range(seeds):
                 try:
                     check(seed)
-                except BaseException as error:
+                except (Exception, pytest.fail.Exception) as error:
                     error.add_note(f"seed {seed}")
                     raise
 

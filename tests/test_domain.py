@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from corpus import CORPUS, for_all, on_circle
 from exact import integers, turn
+from hypothesis import reject
 from hypothesis import strategies as st
 
 import fem_mesh as fm
@@ -303,8 +304,9 @@ def test_after_splitting_no_segments_cross_and_every_row_still_leads_from_end_to
     try:
         domain = Domain(points, given, crossings="split")
     except fm.MeshError as error:
-        assert "no room between the doubles" in str(error)  # noqa: PT017
-        return
+        if "no room between the doubles" not in str(error):
+            raise
+        reject()  # rarely: hypothesis fails a test that rejects most of its cases
     pairs = domain.segments.tolist()
     assert all(kind == OVERLAP for _, _, kind in meetings_of(domain.points, pairs))
     assert len({frozenset(pair) for pair in pairs}) == len(pairs)

@@ -1,6 +1,5 @@
 """Files: what is written is read back to the last bit; what is cut off or wrong is named by file and line."""
 
-import importlib.util
 import signal
 import sys
 import tempfile
@@ -26,12 +25,6 @@ SIDES = [(0, 1), (1, 2), (2, 3), (3, 0)]
 KEEPING_NAMES = [".msh", ".vtu", ".vtk", ".xdmf"]
 SCRATCH = tempfile.TemporaryDirectory()  # where random meshes go, one after the other
 ENDLESS = [".obj", ".inp"]  # these say nowhere how long they are: a shorter one is a smaller mesh
-
-
-def all_of(endings):
-    """Endings, those left out whose meshio reader wants a package that is not there."""
-    lacks = pytest.mark.skipif(importlib.util.find_spec("h5py") is None, reason="needs h5py")
-    return [pytest.param(e, marks=lacks) if e in (".xdmf", ".xmf") else e for e in endings]
 
 
 @pytest.fixture
@@ -151,7 +144,7 @@ def test_a_mesh_comes_back_from_ele_and_node_to_the_last_bit(mesh):
     assert bits(read(scratch("soup.node")).points) == bits(mesh.points)
 
 
-@pytest.mark.parametrize("ending", all_of(FORMATS))
+@pytest.mark.parametrize("ending", FORMATS)
 def test_a_mesh_comes_back_from_every_format_as_far_as_it_keeps_it(ending):
     losing = [part for part, thing in (("segments", "segments"), ("regions", "regions")) if thing in FORMATS[ending].loses]
     parts = [part for part in ("points", "triangles", "segments", "regions") if part not in losing]
@@ -199,7 +192,7 @@ def diagonal(mesh):
     return sorted(set(mesh.triangles[0].tolist()) & set(mesh.triangles[1].tolist()))
 
 
-@pytest.mark.parametrize("ending", all_of([".vtu", ".vtk", ".xdmf", ".xmf"]))
+@pytest.mark.parametrize("ending", [".vtu", ".vtk", ".xdmf", ".xmf"])
 def test_vtk_formats_keep_everything(folder, ending):
     mesh = plate()
     assert write(mesh, f"plate{ending}") == ()
@@ -426,7 +419,7 @@ def test_a_missing_file_is_not_found_by_its_name(folder):
         read("plate.ele")
 
 
-@pytest.mark.parametrize("ending", all_of(FORMATS))
+@pytest.mark.parametrize("ending", FORMATS)
 def test_a_cut_off_file_of_any_format_is_refused_or_whole(folder, ending, capfd):
     mesh = fm.Mesh(SQUARE, [(0, 1, 2), (0, 2, 3)], segments=SIDES, regions=[1, 2])
     write(mesh, f"plate{ending}")
@@ -442,7 +435,7 @@ def test_a_cut_off_file_of_any_format_is_refused_or_whole(folder, ending, capfd)
 
 
 @pytest.mark.parametrize("junk", [b"", b"\n", b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR", b"hello\nworld\n", bytes(range(256)) * 4])
-@pytest.mark.parametrize("ending", all_of(FORMATS))
+@pytest.mark.parametrize("ending", FORMATS)
 def test_junk_of_any_ending_is_refused_without_a_word_on_the_screen(folder, ending, junk, capfd):
     Path(f"junk{ending}").write_bytes(junk)
     with patience(5), pytest.raises(fm.MeshError, match=rf"junk\{ending}"):

@@ -157,6 +157,12 @@ class Domain:
         arrays = (array.copy() for array in (self.points, self.segments, self.source, self.toggles, self.holes))
         return Domain._of, (*arrays, self.names, dict(self.curves), self.regions, self.merged_into.copy(), self.report)
 
+    def reporting(self, sentence: str) -> Domain:
+        """The same domain with one more sentence in its report."""
+        domain = object.__new__(Domain)
+        domain.__dict__.update(self.__dict__, report=(*self.report, sentence))
+        return domain
+
     # ---- showing -------------------------------------------------------------------------------------
 
     def write(self, path: Any) -> tuple[str, ...]:

@@ -66,8 +66,7 @@ def read_poly(path: Path) -> Domain:
     domain = _domain(path, first, points, segments, holes, names=names, regions=regions)
     if not nests(domain):
         return domain
-    make, parts = domain.__reduce__()
-    return make(*parts[:-1], (*domain.report, f"{path} has loops within loops and no hole: {NESTED}"))  # type: ignore[no-any-return]
+    return domain.reporting(f"{path} has loops within loops and no hole: {NESTED}")
 
 
 def read_ele(path: Path) -> Mesh:

@@ -16,7 +16,7 @@ from matplotlib.patches import Patch
 
 from fem_mesh.mesh.points import view_box
 from fem_mesh.mesh.quality import circumcircle
-from fem_mesh.watch.picture import Picture
+from fem_mesh.watch.picture import Picture, picture_of
 from fem_mesh.watch.style import INK, PAPER, ROLES, color_of
 
 if TYPE_CHECKING:
@@ -99,7 +99,7 @@ def draw_step(
         _legend(page, shown, dark)
     head = f"step {k} of {len(trace) - 1}, {step.kind}"
     _caption(page, head, step.caption, dark)
-    return page if ax is not None else Picture(page.figure, f"{head}: {step.caption}")  # type: ignore[arg-type]
+    return page if ax is not None else picture_of(page, f"{head}: {step.caption}")
 
 
 # ---- a mesh ------------------------------------------------------------------------------------------
@@ -132,7 +132,7 @@ def plot_mesh(
     facts = repr(mesh) if title is None else title
     head, _, rest = facts.partition(": ") if title is None else (facts, "", "")
     _caption(page, head, rest, dark)
-    return page if ax is not None else Picture(page.figure, facts)  # type: ignore[arg-type]
+    return page if ax is not None else picture_of(page, facts)
 
 
 def picture_of_mesh(mesh: Mesh) -> Picture:
@@ -146,7 +146,7 @@ def picture_of_mesh(mesh: Mesh) -> Picture:
     _set_view(page, view_box(mesh.points[mesh.triangles[near].ravel()]), False)
     _polygons(page, mesh.points, mesh.triangles[near].tolist(), "mesh", False, [])
     _caption(page, repr(mesh), f"{MOST_SHOWN:,} of its triangles, around the middle", False)
-    return Picture(page.figure, repr(mesh))  # type: ignore[arg-type]
+    return picture_of(page, repr(mesh))
 
 
 def _draw_mesh(page: Axes, points: np.ndarray, triangles: np.ndarray, circles: bool, dark: bool, shown: list[str]) -> None:

@@ -13,7 +13,7 @@ from tqdm import tqdm
 
 from fem_mesh.errors import MeshError
 from fem_mesh.watch.draw import draw_step, new_axes
-from fem_mesh.watch.picture import DPI, Picture
+from fem_mesh.watch.picture import DPI, Picture, picture_of
 from fem_mesh.watch.style import PAPER
 
 if TYPE_CHECKING:
@@ -69,7 +69,7 @@ def picture_of_trace(trace: Trace) -> Picture:
     page = new_axes()
     draw_step(trace, len(trace) - 1, page)
     page.set_title(repr(trace), loc="left", fontsize=10, wrap=True)
-    return Picture(page.figure, repr(trace))  # type: ignore[arg-type]
+    return picture_of(page, repr(trace))
 
 
 def choose_steps(n: int) -> list[int]:

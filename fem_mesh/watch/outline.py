@@ -11,7 +11,7 @@ from matplotlib.colors import to_rgb
 
 from fem_mesh.mesh.points import view_box
 from fem_mesh.watch.draw import MOST_NUMBERS, _caption, _edges, _legend, _markers, _numbers, _set_view, new_axes
-from fem_mesh.watch.picture import Picture
+from fem_mesh.watch.picture import Picture, picture_of
 from fem_mesh.watch.style import INK, PAPER, ROLES, color_of
 
 if TYPE_CHECKING:
@@ -72,7 +72,7 @@ def plot_domain(
         _legend(page, shown, dark)
     head, text = ("Domain", repr(domain).removeprefix("Domain: ")) if title is None else (title, "")
     _caption(page, head, text, dark)
-    return page if ax is not None else Picture(page.figure, repr(domain) if title is None else title)  # type: ignore[arg-type]
+    return page if ax is not None else picture_of(page, repr(domain) if title is None else title)
 
 
 def _view_of(domain: Domain) -> Box:

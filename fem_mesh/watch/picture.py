@@ -54,3 +54,9 @@ class Picture:
         self.figure.savefig(full, format="png", dpi=dpi, facecolor=self.figure.get_facecolor())
         Image.open(full).convert("RGB").quantize(COLORS).save(small, format="png", optimize=True)
         return small.getvalue()
+
+
+def picture_of(page: Axes, alt: str) -> Picture:
+    """The figure of axes that fill a figure of their own, as a Picture that says ``alt``."""
+    assert isinstance(page.figure, Figure)
+    return Picture(page.figure, alt)

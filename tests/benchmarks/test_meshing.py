@@ -10,6 +10,7 @@ import time
 
 import pytest
 import triangle
+from fresh import peak_memory
 from outlines import DOMAINS, l_shape, plate, zigzag
 
 import fem_mesh as fm
@@ -171,34 +172,12 @@ def test_recording_the_l_shape_to_five_hundred_triangles(line):
 
 # ---- in fresh processes --------------------------------------------------------------------------------
 
-MEMORY = """
-import sys, threading, psutil
-sys.path.insert(0, {here!r})
-import outlines, fem_mesh as fm
-domain = fm.Domain(*outlines.l_shape())
-fm.refine(domain, min_angle=20, max_area=1e-3)
-process = psutil.Process()
-base = peak = process.memory_info().rss
-done = threading.Event()
-def watch():
-    global peak
-    while not done.wait(0.001):
-        peak = max(peak, process.memory_info().rss)
-watcher = threading.Thread(target=watch)
-watcher.start()
-mesh = fm.refine(domain, min_angle=20, max_area={area!r}, max_points={budget})
-peak = max(peak, process.memory_info().rss)
-done.set(); watcher.join()
-print((peak - base) / len(mesh.triangles))
-"""
-
-
-def peak_memory(triangles, runs=3):
-    """Bytes a triangle beyond what is there before, the median of a few fresh processes."""
-    code = MEMORY.format(here=HERE, area=area_for(triangles, l_shape(), 20), budget=4 * triangles)
-    run = lambda: subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)  # noqa: E731
-    return statistics.median(float(run().stdout) for _ in range(runs))
-
 
 def test_peak_memory_of_a_million_triangles(line):
-    line("peak memory, 1,000,000 triangles", f"{peak_memory(1_000_000):.0f} bytes a triangle", "", "", "<= 400")
+    before = (
+        f"import sys; sys.path.insert(0, {HERE!r}); import outlines, fem_mesh as fm;"
+        "domain = fm.Domain(*outlines.l_shape()); fm.refine(domain, min_angle=20, max_area=1e-3)"
+    )
+    area = area_for(1_000_000, l_shape(), 20)
+    work = f"mesh = fm.refine(domain, min_angle=20, max_area={area!r}); count = len(mesh.triangles)"
+    line("peak memory, 1,000,000 triangles", f"{peak_memory(before, work, 3):.0f} bytes a triangle", "", "", "<= 400")

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 import triangle
 from families import FAMILIES, uniform
+from fresh import fresh, peak_memory
 from scipy.spatial import Delaunay
 
 import fem_mesh as fm
@@ -64,13 +65,6 @@ def test_growth_from_ten_thousand_to_a_million_points(line):
 # ---- in fresh processes --------------------------------------------------------------------------------
 
 
-def fresh(code):
-    """The number that ``code`` prints in a fresh process, the median of five."""
-    run = lambda: subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)  # noqa: E731
-    run()
-    return statistics.median(float(run().stdout) for _ in range(5))
-
-
 def test_import(line):
     code = "import numpy, time; t = time.perf_counter(); import fem_mesh; print(time.perf_counter() - t)"
     line("import fem_mesh, beyond numpy's own", f"{fresh(code) * 1e3:.0f} ms", "", "", "<= 100 ms")
@@ -94,28 +88,13 @@ def test_recording_a_thousand_points(line):
     line("bowyer_watson recorded, 1,000 points", f"{statistics.median(times) * 1e3:.0f} ms", "", "", "<= 500 ms")
 
 
-MEMORY = """
-import os, threading, numpy as np, psutil, fem_mesh as fm
-fm.delaunay(np.random.default_rng(0).random((5_000, 2)))
-points = np.random.default_rng(1).random((1_000_000, 2))
-process = psutil.Process()
-base = peak = process.memory_info().rss
-done = threading.Event()
-def watch():
-    global peak
-    while not done.wait(0.001):
-        peak = max(peak, process.memory_info().rss)
-watcher = threading.Thread(target=watch)
-watcher.start()
-mesh = fm.delaunay(points)
-peak = max(peak, process.memory_info().rss)
-done.set(); watcher.join()
-print((peak - base) / 1_000_000)
-"""
-
-
 def test_peak_memory_of_a_million_points(line):
-    line("peak memory beyond the input, n = 1,000,000", f"{fresh(MEMORY):.0f} bytes a point", "", "", "<= 250")
+    before = (
+        "import numpy as np, fem_mesh as fm; fm.delaunay(np.random.default_rng(0).random((5_000, 2)));"
+        "points = np.random.default_rng(1).random((1_000_000, 2))"
+    )
+    peak = peak_memory(before, "mesh = fm.delaunay(points); count = len(points)")
+    line("peak memory beyond the input, n = 1,000,000", f"{peak:.0f} bytes a point", "", "", "<= 250")
 
 
 def test_first_compilation(line, tmp_path):
