@@ -605,3 +605,16 @@ def test_coordinates_at_the_edge_of_the_exact_range_are_refined_or_left():
         corners = np.array([(0, 0), (1, 0), (1, 1), (0, 1)]) * scale
         mesh = fm.refine(fm.Domain.from_loops(corners), min_angle=30, max_area=0.01 * scale * scale, max_points=400)
         assert len(mesh.triangles) > 100
+
+
+def test_a_segment_keeps_all_its_names_however_often_it_is_listed():
+    square = fm.Mesh(
+        [(0, 0), (1, 0), (1, 1), (0, 1)],
+        [(0, 1, 2), (0, 2, 3)],
+        segments=[(0, 1), (1, 2), (1, 0)],
+        boundaries={"all": [0, 1], "right": [1], "again": [2]},
+    )
+    mesh = fm.refine(square, max_area=0.1)
+    for name, places in (("all", {(0.5, 0), (1, 0.5)}), ("right", {(1, 0.5)}), ("again", {(0.5, 0)})):
+        used = {tuple(p) for p in mesh.points[mesh.segments[mesh.boundaries[name]]].reshape(-1, 2).tolist()}
+        assert places <= used

@@ -351,3 +351,19 @@ def test_large_outlines_with_many_points(n):
     check.check_area(recipe, mesh)
     points, segments = check.distinct(recipe)
     assert len(mesh.triangles) == len(check.shewchuk.triangulate({"vertices": points, "segments": segments}, "pQ")["triangles"])
+
+
+def test_steps_show_the_edges_that_are_crossed_and_what_is_hidden():
+    banks = [(0, 4), (12, 4), (1, 8), (4, 7), (7, 9), (10, 7), (2, 1), (6, 6), (9, 2), (12, 0)]
+    trace = fm.record(fm.insert_segments(fm.Domain(banks, [(0, 1)])))
+    cross, laid = trace[1], trace[2]
+    assert len(cross.edges) == len(cross.doomed) - 1 == 4
+    for a, b in cross.edges:
+        assert fm.orient(banks[0], banks[1], banks[a]) * fm.orient(banks[0], banks[1], banks[b]) < 0
+    inside = {v for v, p in enumerate(banks) for t in laid.added if fm.in_circle(*(banks[c] for c in t), p)}
+    assert f"{len(inside)} points in their circles, none that its triangle sees" in laid.caption
+
+
+def test_a_mesh_of_a_domain_that_touches_itself_is_valid():
+    touching = fm.Domain.from_loops([(0, 0), (1, 0), (1, 1), (0, 1)], [(1, 1), (2, 1), (2, 2), (1, 2)])
+    assert fm.constrained_delaunay(touching).validate().areas().sum() == 2

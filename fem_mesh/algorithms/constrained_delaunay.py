@@ -6,7 +6,8 @@ other, watched (``insert_segments``) or at full speed (``constrained_delaunay``)
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator, Iterator
+from collections.abc import Callable, Generator, Iterable, Iterator
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -21,16 +22,16 @@ from fem_mesh.algorithms.carving import (
     flood,
     flood_from_ghosts,
 )
+from fem_mesh.algorithms.seeds import begin_at_seed, color_regions, ghosts, locate_seeds, say_rows
 from fem_mesh.algorithms.segments import BLOCKED, CROSSED, LAID, insert_pieces, note_leaving
 from fem_mesh.domain.domain import Domain
 from fem_mesh.errors import MeshError
 from fem_mesh.kernel import call, run, watch
-from fem_mesh.mesh.locator import Locator
 from fem_mesh.mesh.mesh import Mesh
 from fem_mesh.mesh.order import insertion_order
-from fem_mesh.mesh.quality import turns_of
 from fem_mesh.mesh.segmented import Segmented
 from fem_mesh.mesh.workspace import FLOODED, FROM, NEXT, PIECE, REACHED, SEGMENTS, Workspace
+from fem_mesh.predicates import in_circle_sign
 from fem_mesh.steps import Step, Triangle, many
 
 Events = Iterator[tuple[int, int]]
@@ -123,35 +124,7 @@ def constrain(domain: Domain, parts: Segmented, drive: Driver) -> Iterator[tuple
     left = parts.piece_of[1:]
     lost = [] if (left >= 0).sum() == len(laid) else np.setdiff1d(laid, left).tolist()
     if lost:
-        work.note = f"outside the domain, and gone: segment{'s' * (len(lost) > 1)} {_rows(domain, lost)}"
-
-
-def ghosts(parts: Segmented) -> np.ndarray:
-    """Which triangles are ghosts: bool (count,)."""
-    return np.asarray((parts.work.origin[: 3 * parts.count].reshape(-1, 3) == 0).any(axis=1))
-
-
-def locate_seeds(domain: Domain, parts: Segmented) -> list[int]:
-    """The triangle of each hole seed, then of each region's. Raises MeshError for one on a segment or beyond the hull."""
-    places = [*map(tuple, domain.holes.tolist()), *((region.x, region.y) for region in domain.regions)]
-    if not places:
-        return []
-    work = parts.work
-    real = np.flatnonzero(~ghosts(parts))
-    triangles = work.origin[: 3 * parts.count].reshape(-1, 3)[real].astype(np.int64)
-    found = Locator(work.xy, triangles).find(np.array(places))
-    for i, (t, place) in enumerate(zip(found.tolist(), places, strict=True)):
-        what = _seed(domain, i)
-        if t < 0:
-            raise MeshError(f"{what} at {place} lies outside the domain: put it inside, or drop it")
-        for k in range(3):
-            h = 3 * int(real[t]) + k
-            a, b = triangles[t, k], triangles[t, (k + 1) % 3]
-            corners = np.array([work.xy[a], work.xy[b], place])
-            if parts.segment[h] and turns_of(corners, np.array([[0, 1, 2]]))[0] == 0:
-                row = int(parts.piece_of[parts.segment[h]])
-                raise MeshError(f"{what} at {place} lies on segment {_rows(domain, [row])}: move it to one side")
-    return [int(t) for t in real[found]]
+        work.note = f"outside the domain, and gone: segment{'s' * (len(lost) > 1)} {say_rows(domain, lost)}"
 
 
 def carve(
@@ -167,60 +140,13 @@ def carve(
         yield "carving", event, where
 
 
-def begin_at_seed(domain: Domain, parts: Segmented, side: np.ndarray, i: int, t: int, from_hull: int) -> None:
-    """Let the flood in at hole seed ``i``, in triangle ``t``, unless another seed of the same hole did."""
-    work = parts.work
-    if side[t] == UNKNOWN:
-        side[t] = OUTSIDE
-        work.cavity[work.state[REACHED]] = t
-        work.state[REACHED] += 1
-    elif t in work.cavity[:from_hull]:
-        place = tuple(domain.holes[i].tolist())
-        raise MeshError(f"{_seed(domain, i)} at {place} lies outside the domain: the flood from its boundary is there already")
-
-
-def color_regions(domain: Domain, parts: Segmented, side: np.ndarray, seeds: list[int]) -> None:
-    """Number the triangles of each region, from its seed up to the segments around it: 1, 2, ..."""
-    work, m = parts.work, parts.count
-    parts.region = np.zeros(m, np.int32)
-    twin, segment = work.twin[: 3 * m].reshape(-1, 3), parts.segment[: 3 * m].reshape(-1, 3)
-    for i, t in enumerate(seeds):
-        what = _seed(domain, len(domain.holes) + i)
-        place = (domain.regions[i].x, domain.regions[i].y)
-        if side[t] == OUTSIDE:
-            raise MeshError(f"{what} at {place} lies outside the domain or in a hole: put it inside, or drop it")
-        if parts.region[t]:
-            other = domain.regions[int(parts.region[t]) - 1].name
-            raise MeshError(f"{what} at {place} lies in the same part as region {other!r}: a segment must part them")
-        front = np.array([t])
-        while len(front):  # each turn colours triangles that had no colour
-            parts.region[front] = i + 1
-            across = (twin[front] // 3)[segment[front] == 0]
-            front = np.unique(across[(parts.region[across] == 0) & (side[across] != OUTSIDE)]).astype(np.int64)
-    parts.region[ghosts(parts)] = 0
-
-
-def _seed(domain: Domain, i: int) -> str:
-    j = len(domain.holes)
-    return f"hole seed {i}" if i < j else f"region {domain.regions[i - j].name!r}"
-
-
-def _rows(domain: Domain, rows: list[int]) -> str:
-    """The user's rows of segments, with their end points."""
-    shown = []
-    for row in rows[:5]:
-        (ax, ay), (bx, by) = domain.points[domain.segments[row]].tolist()
-        shown.append(f"{int(domain.source[row])} from ({ax:.6g}, {ay:.6g}) to ({bx:.6g}, {by:.6g})")
-    return ", ".join(shown) + (f" and {len(rows) - 5} more" if len(rows) > 5 else "")
-
-
 def _say_crossing(domain: Domain, row: int, other: int) -> str:
-    return f'segments {_rows(domain, [row])} and {_rows(domain, [other])} cross: mend them, or say crossings="split"'
+    return f'segments {say_rows(domain, [row])} and {say_rows(domain, [other])} cross: mend them, or say crossings="split"'
 
 
 def _say_conflict(domain: Domain, row: int) -> str:
     return (
-        f"whether a place is inside depends on the way there: segment {_rows(domain, [row])} is part of loops that do "
+        f"whether a place is inside depends on the way there: segment {say_rows(domain, [row])} is part of loops that do "
         "not nest. Name the holes by seeds (holes=...), or give each outline as a loop of its own"
     )
 
@@ -247,7 +173,7 @@ def insert_segments(domain: Domain) -> Generator[Step, None, Mesh]:
     ...     print(step.kind, "-", step.caption)
     start - 2 triangles on 4 points, all circles empty; 1 segment to insert
     cross - segment 0 from 0 to 1 crosses 1 edge: its 2 triangles will go
-    segment - edge 0-1 is there: 2 triangles come, 2 go
+    segment - edge 0-1 is there: 2 triangles come, 2 go; 2 points in their circles, none that its triangle sees
     done - 2 triangles on 4 points, 1 segment: every circle is empty of the points that its triangle sees
     """
     return _watch(domain, triangulate(as_domain(domain)))
@@ -271,11 +197,15 @@ def _watch(domain: Domain, parts: Segmented) -> Generator[Step, None, Mesh]:
             row, begun = work.state.item(PIECE), work.state.item(FROM)
             doomed = tuple(t for t in map(work.corners, work.cavity[:where].tolist()) if t)
             way = (work.name.item(begun) if begun else domain.segments.item(row, 0), domain.segments.item(row, 1))
-            yield Step("cross", say_cross, doomed=doomed, asked=(way,), row=int(domain.source[row]), way=way)
+            crossed = [tuple(sorted(set(s) & set(t))) for s, t in pairwise(doomed)]
+            yield Step("cross", say_cross, doomed=doomed, asked=(way,), edges=crossed, row=int(domain.source[row]), way=way)
         elif event == LAID:
             edge = work.edge(where)
             added = tuple(t for t in map(work.corners, work.cavity[: len(doomed)].tolist()) if t)
-            yield Step("segment", say_segment, added=added, removed=doomed, new_segments=(edge,), edge=edge)
+            yield Step(
+                "segment", say_segment, added=added, removed=doomed, circles=added, new_segments=(edge,), edge=edge,
+                points_there=domain.points,
+            )  # fmt: skip
             doomed = ()
     mesh = parts.to_mesh(domain)
     yield Step("done", say_done, n=len(mesh.points) - len(mesh.unused), m=len(mesh.triangles), k=len(mesh.segments))
@@ -305,7 +235,17 @@ def say_segment(step: Step) -> str:
     u, v = step.facts["edge"]
     if not step.added:
         return f"edge {u}-{v} is there already: it becomes a segment"
-    return f"edge {u}-{v} is there: {many(len(step.added), 'triangle')} come, {len(step.removed)} go"
+    came = f"edge {u}-{v} is there: {many(len(step.added), 'triangle')} come, {len(step.removed)} go"
+    hidden = len(points_in_circles(step.added, step.facts["points_there"]))
+    return f"{came}; {many(hidden, 'point')} in their circles, none that its triangle sees" if hidden else came
+
+
+def points_in_circles(triangles: Iterable[Triangle], points: np.ndarray) -> list[int]:
+    """The points that lie strictly inside the circle of any of the ``triangles``: exact."""
+    at = points.tolist()
+    return [
+        v for v, p in enumerate(at) if any(in_circle_sign(*at[a], *at[b], *at[c], *p) > 0 for a, b, c in triangles)
+    ]  # fmt: skip
 
 
 def say_carve(step: Step) -> str:

@@ -36,7 +36,7 @@ def refine(
     """A mesh of ``domain`` whose angles are all at least ``min_angle``, and which is as fine as you ask.
 
     domain : a Domain; or a Mesh, whose points and segments stay
-    min_angle : in degrees; up to 36 it ends almost always, 0 asks for nothing
+    min_angle : in degrees; beyond some 33 it need not end before the budget; 0 asks for nothing
     max_area : the largest area of a triangle
     size : the longest edge: a number, or a function ``size(x, y)`` of arrays that returns an array. No edge of a
         triangle is then longer than ``size`` at its corners and its centroid

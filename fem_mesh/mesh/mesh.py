@@ -206,7 +206,7 @@ class Mesh:
 
     def validate(self, delaunay: bool = False) -> Mesh:
         """Climb the ladder of validators (see ``fem_mesh.mesh.validators``): raises MeshError, or returns the mesh."""
-        validators.validate(self.points, self.triangles, delaunay=delaunay)
+        validators.validate(self.points, self.triangles, delaunay=delaunay, touching=self.domain is not None)
         return self
 
     # ---- questions -------------------------------------------------------------------------------

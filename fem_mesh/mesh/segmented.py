@@ -13,6 +13,7 @@ from fem_mesh.mesh.constrained import close_boundaries
 from fem_mesh.mesh.mesh import Mesh, Refinement
 from fem_mesh.mesh.workspace import COUNT, NEXT, SEGMENTS, Workspace, list_triangles
 
+Names = str | tuple[str, ...]  # of a row: one, "" for none, or several
 NO_PIECE = -1  # the row of a sub-segment that nobody asked for: a boundary
 
 
@@ -26,7 +27,7 @@ class Segmented:
     edge_of: np.ndarray  # a half-edge of each sub-segment
     piece_of: np.ndarray  # int32, the row of ``ends`` that each sub-segment lies on, or NO_PIECE
     region: np.ndarray = field(default_factory=lambda: np.zeros(0, np.int32))  # of each triangle
-    names: tuple[str, ...] = ()  # of the rows of ``ends``
+    names: tuple[Names, ...] = ()  # of the rows of ``ends``
     region_names: tuple[str, ...] = ("",)
 
     @property
@@ -124,12 +125,14 @@ class Segmented:
         )  # fmt: skip
 
 
-def rows_by_name(piece: np.ndarray, names: tuple[str, ...]) -> Mapping[str, np.ndarray]:
+def rows_by_name(piece: np.ndarray, names: tuple[Names, ...]) -> Mapping[str, np.ndarray]:
     """The rows of ``piece`` under each name, in the order of the names' first use."""
-    rows: dict[str, list[int]] = {name: [] for name in names if name}
+    each = [name if isinstance(name, tuple) else (name,) for name in names]
+    rows: dict[str, list[int]] = {name: [] for row in each for name in row if name}
     for row, k in enumerate(piece.tolist()):
-        if k >= 0 and names and names[k]:
-            rows[names[k]].append(row)
+        for name in each[k] if k >= 0 and names else ():
+            if name:
+                rows[name].append(row)
     return {name: np.array(found, np.int32) for name, found in rows.items() if found}
 
 

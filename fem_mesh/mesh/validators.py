@@ -23,8 +23,10 @@ from fem_mesh.mesh.quality import as_triangles, turn, turns_of
 from fem_mesh.predicates import in_circle_sign, orient_sign
 
 
-def validate(points: Any, triangles: Any, delaunay: bool = True) -> None:
+def validate(points: Any, triangles: Any, delaunay: bool = True, touching: bool = False) -> None:
     """Climb the ladder of validators; raises MeshError at the first rung that gives way.
+
+    ``touching``: the boundary may pass a vertex several times, as that of a domain may.
 
     >>> validate([(0, 0), (1, 0), (0, 1)], [(0, 2, 1)])
     Traceback (most recent call last):
@@ -33,7 +35,7 @@ def validate(points: Any, triangles: Any, delaunay: bool = True) -> None:
     points, triangles = as_points(points), as_triangles(triangles)
     check_elements(points, triangles)
     check_edges(points, triangles)
-    check_topology(points, triangles)
+    check_topology(points, triangles, touching)
     check_realization(points, triangles)
     if delaunay:
         check_delaunay(points, triangles)
@@ -81,12 +83,14 @@ def check_segments(points: np.ndarray, triangles: np.ndarray, segments: np.ndarr
         raise MeshError(f"segment {i} = ({a}, {b}) is no edge of a triangle: constrained_delaunay puts segments in")
 
 
-def check_topology(points: np.ndarray, triangles: np.ndarray) -> None:
-    """The boundary passes each vertex at most once, and V - E + F fits its loops (Euler's formula)."""
+def check_topology(points: np.ndarray, triangles: np.ndarray, touching: bool = False) -> None:
+    """The boundary passes each vertex at most once, unless it may be ``touching``; V - E + F fits its loops (Euler)."""
     if len(triangles) == 0:
         return
     starts, ends = boundary_edges(points, triangles)
     times = np.bincount(starts, minlength=len(points))
+    if touching and times.max() > 1:
+        return  # Euler's formula is for boundaries that pass each vertex once
     for v in np.flatnonzero(times > 1)[:1]:
         raise MeshError(f"the boundary passes point {v} at {_at(points, v)} {times[v]} times: triangles only touch there")
     loops, pieces = len(trace_loops(starts, ends)), _count_pieces(triangles, len(points))

@@ -10,7 +10,7 @@ from fem_mesh.mesh import validators
 from fem_mesh.mesh.constrained import restore_delaunay
 from fem_mesh.mesh.locator import Locator
 from fem_mesh.mesh.mesh import Mesh
-from fem_mesh.mesh.segmented import NO_PIECE, Segmented
+from fem_mesh.mesh.segmented import NO_PIECE, Names, Segmented
 from fem_mesh.mesh.workspace import FLIPPED, NEXT, Workspace
 
 
@@ -50,7 +50,7 @@ def reopen(mesh: Mesh, chosen: np.ndarray | None = None) -> tuple[Segmented, np.
     return parts, None if chosen is None else np.pad(chosen, (0, parts.count - m))
 
 
-def chains_of(mesh: Mesh) -> tuple[np.ndarray, tuple[str, ...], np.ndarray]:
+def chains_of(mesh: Mesh) -> tuple[np.ndarray, tuple[Names, ...], np.ndarray]:
     """The segments as they were asked for: their ends (rows, 2) and names; and the row of each of ``mesh.segments``.
 
     Those of its domain; else what ``segment_of`` puts together; else each is one of its own.
@@ -59,24 +59,25 @@ def chains_of(mesh: Mesh) -> tuple[np.ndarray, tuple[str, ...], np.ndarray]:
         return mesh.domain.segments.astype(np.int64), mesh.domain.names, mesh.segment_of.astype(np.int64)
     whole = mesh.segment_of.astype(np.int64)
     alone = whole < 0
-    whole[alone] = whole.max(initial=-1) + 1 + np.arange(int(alone.sum()))
+    _, edge = np.unique(np.sort(mesh.segments, axis=1), axis=0, return_inverse=True)
+    whole[alone] = whole.max(initial=-1) + 1 + edge.reshape(-1)[alone]  # an edge that is listed twice is one
     _, row = np.unique(whole, return_inverse=True)
     row = row.reshape(-1)
     k = int(row.max(initial=-1)) + 1
-    names = [""] * k
+    names: list[tuple[str, ...]] = [()] * k
     for label, rows in mesh.boundaries.items():
-        for i in rows.tolist():
-            names[row[i]] = names[row[i]] or label
+        for i in np.unique(row[rows]).tolist():
+            names[i] = (*names[i], label)
     ends = np.empty((k, 2), np.int64)
     order = np.argsort(row, kind="stable")
     starts = np.searchsorted(row[order], np.arange(k + 1))
     for i in range(k):
-        chain = mesh.segments[order[starts[i] : starts[i + 1]]]
+        chain = np.unique(np.sort(mesh.segments[order[starts[i] : starts[i + 1]]], axis=1), axis=0)
         used, times = np.unique(chain, return_counts=True)
         tips = used[times == 1]
         if len(tips) != 2:
             raise MeshError(f"segment_of {i}: its {len(chain)} pieces make no chain from one end to another")
-        ends[i] = tips if tips[0] in chain[:, 0] else tips[::-1]
+        ends[i] = tips if tips[0] in mesh.segments[order[starts[i] : starts[i + 1]], 0] else tips[::-1]
     return ends, tuple(names), row
 
 
