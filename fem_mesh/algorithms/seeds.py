@@ -41,7 +41,7 @@ def locate_seeds(domain: Domain, parts: Segmented) -> list[int]:
     return [int(t) for t in real[found]]
 
 
-def begin_atsay_seed(domain: Domain, parts: Segmented, side: np.ndarray, i: int, t: int, from_hull: int) -> None:
+def begin_at_seed(domain: Domain, parts: Segmented, side: np.ndarray, i: int, t: int, from_hull: int) -> None:
     """Let the flood in at hole seed ``i``, in triangle ``t``, unless another seed of the same hole did."""
     work = parts.work
     if side[t] == UNKNOWN:
@@ -50,9 +50,7 @@ def begin_atsay_seed(domain: Domain, parts: Segmented, side: np.ndarray, i: int,
         work.state[REACHED] += 1
     elif t in work.cavity[:from_hull]:
         place = tuple(domain.holes[i].tolist())
-        raise MeshError(
-            f"{say_seed(domain, i)} at {place} lies outside the domain: the flood from its boundary is there already"
-        )
+        raise MeshError(f"{say_seed(domain, i)} at {place} lies outside the domain: the flood from there has come by")
 
 
 def color_regions(domain: Domain, parts: Segmented, side: np.ndarray, seeds: list[int]) -> None:
