@@ -1,5 +1,6 @@
 """Refinement of every domain that broke others: it ends, keeps its bounds, and says truly what it could not keep."""
 
+import math
 import pickle
 import warnings
 
@@ -618,3 +619,25 @@ def test_a_segment_keeps_all_its_names_however_often_it_is_listed():
     for name, places in (("all", {(0.5, 0), (1, 0.5)}), ("right", {(1, 0.5)}), ("again", {(0.5, 0)})):
         used = {tuple(p) for p in mesh.points[mesh.segments[mesh.boundaries[name]]].reshape(-1, 2).tolist()}
         assert places <= used
+
+
+def test_a_corner_is_sharp_where_its_curves_meet_at_a_small_angle_though_their_chords_do_not():
+    half = math.radians(61) / 2
+    tip, low, high = (0, 0), (math.cos(half), -math.sin(half)), (math.cos(half), math.sin(half))
+
+    def inward(p, q):
+        middle = [(p[i] + q[i]) / 2 + 0.25 * turned for i, turned in enumerate((p[1] - q[1], q[0] - p[0]))]
+        return lambda t: tuple((1 - t) ** 2 * a + 2 * t * (1 - t) * b + t * t * c for a, b, c in zip(p, middle, q, strict=True))
+
+    curves = {0: inward(tip, low), 4: inward(high, tip)}
+    domain = fm.Domain([tip, low, (2, -1), (2, 1), high], [(0, 1), (1, 2), (2, 3), (3, 4), (4, 0)], curves=curves)
+    mesh = fm.refine(domain, min_angle=20, size=0.05)
+    assert mesh.refinement.complete
+    assert set(mesh.refinement.why) == {"small input angle"}
+    assert np.hypot(*np.diff(mesh.points[mesh.segments], axis=1)[:, 0].T).min() > 1e-3
+
+
+def test_a_vertex_on_the_chord_of_a_curve_is_refused():
+    square, sides = [(0, 0), (1, 0), (1, 1), (0, 1), (0.5, 0)], [(0, 1), (1, 2), (2, 3), (3, 0)]
+    with pytest.raises(fm.MeshError, match=r"point 4 at \(0.5, 0\) lies on the chord of segment 0"):
+        fm.Domain(square, sides, curves={0: lambda t: (t, 0.4 * t * (1 - t))})

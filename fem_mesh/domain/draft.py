@@ -14,7 +14,7 @@ from fem_mesh.domain.curves import check_ends, cut_gently, halve
 from fem_mesh.domain.loops import find_outline, find_toggling
 from fem_mesh.domain.reading import place, some
 from fem_mesh.errors import MeshError
-from fem_mesh.predicates import SMALLEST
+from fem_mesh.predicates import SMALLEST, orient_sign
 
 CLOSE = 1e-9  # of the domain's size: how far off its curve a point may be
 ROUNDS = 20  # of splitting: rounded crossing points can make new crossings
@@ -56,6 +56,7 @@ class Draft:
         self._drop_repeated()
         self.toggles, self.block = find_toggling(self.pairs, self.times, len(self.points))
         self._resolve_meetings(split)
+        self._check_chords()
         for block in np.unique(self.block[self.block >= 0]):
             rows = np.flatnonzero(self.block == block)
             self.toggles[rows] ^= find_outline(self.points, self.pairs[rows])
@@ -154,6 +155,23 @@ class Draft:
         overlaps = meetings[meetings[:, 2] == OVERLAP, :2].tolist()
         if overlaps:
             self.report.append(_first(self._say_overlap(*overlaps[0]), len(overlaps), "overlap"))
+
+    def _check_chords(self) -> None:
+        """No vertex lies on the chord of a curve: the chord would be split there, and the curve would have a dent."""
+        used = np.flatnonzero(self.merged_into == np.arange(len(self.points)))
+        order = used[np.argsort(self.points[used, 0], kind="stable")]
+        x = self.points[order, 0]
+        for i in self.curves:
+            ends = self.points[self.pairs[i]]
+            low, high = ends.min(axis=0), ends.max(axis=0)
+            near = order[np.searchsorted(x, low[0]) : np.searchsorted(x, high[0], side="right")]
+            near = near[(self.points[near, 1] >= low[1]) & (self.points[near, 1] <= high[1])]
+            for v in np.setdiff1d(near, self.pairs[i]).tolist():
+                if orient_sign(*ends[0].tolist(), *ends[1].tolist(), *self.points[v].tolist()) == 0:
+                    raise MeshError(
+                        f"point {v} at {place(self.points, v)} lies on the chord of {self._row(i)}, which is curved: "
+                        "move it, or put it on the curve and end the segment there"
+                    )
 
     def _split(self, crossings: list[list[int]]) -> list[str]:
         """Split segments at the points where they cross, rounded; returns what was done."""

@@ -12,6 +12,7 @@ import numpy as np
 from fem_mesh.domain.curves import as_curve
 from fem_mesh.errors import MeshError
 from fem_mesh.mesh.points import as_points
+from fem_mesh.mesh.quality import as_rows
 
 SHOWN = 5  # rows named in a message, before "and 7 more"
 
@@ -47,16 +48,7 @@ class Region:
 
 def as_segments(segments: Any, points: np.ndarray) -> np.ndarray:
     """``segments`` as a new int64 array (k, 2). Raises MeshError where they are no pairs of point numbers."""
-    try:
-        given = np.asarray(segments if hasattr(segments, "__array__") else list(segments))
-    except (TypeError, ValueError):
-        raise MeshError(f"segments must be rows of two point numbers, not {segments!r:.80}") from None
-    if given.size == 0:
-        return np.empty((0, 2), np.int64)
-    if given.ndim != 2 or given.shape[1] != 2:
-        raise MeshError(f"segments must have the shape (k, 2), not {given.shape}: one row (a, b) a segment")
-    if given.dtype.kind not in "iu":
-        raise MeshError(f"segments must be pairs of point numbers (integers), not {given.dtype}")
+    given = as_rows(segments, "segment", "(k, 2)", ("a", "b"))
     wrong = np.flatnonzero(((given < 0) | (given >= len(points))).any(axis=1))
     for row in wrong[:1]:
         a, b = given[row].tolist()

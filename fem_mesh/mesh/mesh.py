@@ -101,7 +101,7 @@ class Mesh:
         triangles = quality.counter_clockwise(points, triangles)
         twins = validators.check_edges(points, triangles)
         neighbors = np.where(twins < 0, -1, twins // 3)[:, [1, 2, 0]].astype(np.int32)
-        segments = np.array([] if segments is None else segments, np.int32).reshape(-1, 2)
+        segments = quality.as_rows(() if segments is None else segments, "segment", "(k, 2)", ("a", "b")).astype(np.int32)
         validators.check_segments(points, triangles, segments)
         k, m = len(segments), len(triangles)
         rows = {name: _rows(rows, k, f"boundaries[{name!r}]") for name, rows in (boundaries or {}).items()}

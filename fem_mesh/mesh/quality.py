@@ -17,19 +17,26 @@ THIN = 1e-6  # area to the square of the size: flatter triangles are measured in
 
 def as_triangles(triangles: Any) -> np.ndarray:
     """``triangles`` as a new int32 array (m, 3). Raises MeshError where they are no triples of integers."""
-    try:
-        given = np.asarray(triangles if hasattr(triangles, "__array__") else list(triangles))
-    except (TypeError, ValueError):
-        raise MeshError(f"triangles must be rows of three point numbers, not {triangles!r:.80}") from None
-    if given.size == 0:
-        return np.empty((0, 3), np.int32)
-    if given.ndim != 2 or given.shape[1] != 3:
-        raise MeshError(f"triangles must have the shape (m, 3), not {given.shape}: one row (a, b, c) a triangle")
-    if given.dtype.kind not in "iu":
-        raise MeshError(f"triangles must be triples of point numbers (integers), not {given.dtype}")
+    given = as_rows(triangles, "triangle", "(m, 3)", ("a", "b", "c"))
     for v in given[(given < -1) | (given > np.iinfo(np.int32).max)][:1]:
         raise MeshError(f"triangles has the point number {v}, which names no point")
     return given.astype(np.int32)
+
+
+def as_rows(rows: Any, thing: str, shape: str, row: tuple[str, ...]) -> np.ndarray:
+    """Rows of point numbers, one a ``thing``, as an array of integers with as many columns as ``row``."""
+    several = {2: ("two", "pairs"), 3: ("three", "triples")}[len(row)]
+    try:
+        given = np.asarray(rows if hasattr(rows, "__array__") else list(rows))
+    except (TypeError, ValueError):
+        raise MeshError(f"{thing}s must be rows of {several[0]} point numbers, not {rows!r:.80}") from None
+    if given.size == 0:
+        return np.empty((0, len(row)), np.int64)
+    if given.ndim != 2 or given.shape[1] != len(row):
+        raise MeshError(f"{thing}s must have the shape {shape}, not {given.shape}: one row ({', '.join(row)}) a {thing}")
+    if given.dtype.kind not in "iu":
+        raise MeshError(f"{thing}s must be {several[1]} of point numbers (integers), not {given.dtype}")
+    return given
 
 
 def angles(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:

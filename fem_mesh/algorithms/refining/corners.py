@@ -12,7 +12,7 @@ from fem_mesh.mesh.segmented import Segmented
 from fem_mesh.mesh.workspace import SEGMENTS
 
 
-def classify_vertices(parts: Segmented) -> np.ndarray:
+def classify_vertices(parts: Segmented, curved: np.ndarray) -> np.ndarray:
     """What ``place`` holds of each vertex given: see encroachment.py."""
     work, count = parts.work, int(parts.work.state[SEGMENTS])
     place = np.full(len(work.xy), CORNER, np.int32)
@@ -25,13 +25,18 @@ def classify_vertices(parts: Segmented) -> np.ndarray:
     within = (low == high) & (low >= 0)
     within[parts.ends.ravel()] = False
     place[within] = low[within] + 1
-    call(find_sharp_corners, work.xy, work.origin, work.twin, parts.segment, place, parts.count, size=parts.count)
+    arrays = (work.xy, work.origin, work.twin, parts.segment, parts.piece_of, curved, place)
+    call(find_sharp_corners, *arrays, parts.count, size=parts.count)
     return place
 
 
 @kernel
-def find_sharp_corners(xy, origin, twin, segment, place, count):
-    """Mark the corners where two sub-segments, with only triangles between them, meet at less than 60 degrees."""
+def find_sharp_corners(xy, origin, twin, segment, piece_of, curved, place, count):
+    """Mark the corners where two sub-segments, with only triangles between them, meet at less than 60 degrees.
+
+    A curve leaves its chord at up to 30 degrees: then less than 90, or 120, by the chords may be so little. Where it is
+    not, to be split at powers of two does no harm.
+    """
     for i in range(3 * count):
         h = index(i)
         if segment[h] == 0 or is_ghost_triangle(h, origin) or place[origin[h]] > 0:
@@ -41,8 +46,11 @@ def find_sharp_corners(xy, origin, twin, segment, place, count):
             g = prev_edge(twin[g])
         a, b, c = origin[h], origin[next_edge(h)], origin[g]
         bx, by, cx, cy = xy[b, 0] - xy[a, 0], xy[b, 1] - xy[a, 1], xy[c, 0] - xy[a, 0], xy[c, 1] - xy[a, 1]
-        dot = bx * cx + by * cy
-        if bx * cy > by * cx and dot > 0.0 and 4.0 * dot * dot > (bx * bx + by * by) * (cx * cx + cy * cy):
+        dot, quarter = bx * cx + by * cy, 0.25 * (bx * bx + by * by) * (cx * cx + cy * cy)
+        curves = int(curved[piece_of[segment[h]]]) + int(curved[piece_of[segment[g]]])
+        sharp = dot > 0.0 and (curves > 0 or dot * dot > quarter)
+        sharp = sharp or (curves == 2 and dot * dot < quarter)
+        if bx * cy > by * cx and sharp:
             place[a] = SHARP
 
 

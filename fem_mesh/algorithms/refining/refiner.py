@@ -132,7 +132,7 @@ class Refiner:
         curved = np.zeros(len(parts.ends) + 1, bool)  # the last row is that of NO_PIECE
         curved[list(curves)] = True
         refiner = cls(
-            parts, bounds, curves, limit, label, classify_vertices(parts), curved,
+            parts, bounds, curves, limit, label, classify_vertices(parts, curved), curved,
             wanted=np.full(parts.count if bounds.size else 0, np.nan), queue=np.zeros((parts.count, 3), np.uint32),
             waiting=np.zeros((len(parts.edge_of), 2), np.uint32), limits=limits, domain=domain,
         )  # fmt: skip
