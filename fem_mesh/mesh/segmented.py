@@ -127,13 +127,16 @@ class Segmented:
 
 def rows_by_name(piece: np.ndarray, names: tuple[Names, ...]) -> Mapping[str, np.ndarray]:
     """The rows of ``piece`` under each name, in the order of the names' first use."""
-    each = [name if isinstance(name, tuple) else (name,) for name in names]
-    rows: dict[str, list[int]] = {name: [] for row in each for name in row if name}
-    for row, k in enumerate(piece.tolist()):
-        for name in each[k] if k >= 0 and names else ():
-            if name:
-                rows[name].append(row)
-    return {name: np.array(found, np.int32) for name, found in rows.items() if found}
+    kinds: dict[Names, int] = {"": 0}
+    kind = np.array([kinds.setdefault(name, len(kinds)) for name in names] or [0])
+    of_row = kind[piece]
+    rows: dict[str, list[np.ndarray]] = {}
+    parts = np.split(np.argsort(of_row, kind="stable"), np.cumsum(np.bincount(of_row, minlength=len(kinds)))[:-1])
+    for name, found in zip(kinds, parts, strict=True):
+        for one in name if isinstance(name, tuple) else (name,):
+            if one and len(found):
+                rows.setdefault(one, []).append(found)
+    return {name: np.sort(np.concatenate(found)).astype(np.int32) for name, found in rows.items()}
 
 
 def _trimmed(array: np.ndarray, m: int) -> np.ndarray:
