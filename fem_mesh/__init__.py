@@ -10,6 +10,7 @@ Mesh: 16 points, 21 triangles, smallest angle 1.6 degrees
 18
 """
 
+from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from fem_mesh import textbook
@@ -41,26 +42,34 @@ from fem_mesh.files.endings import read, write
 from fem_mesh.mesh.mesh import Mesh, Refinement
 from fem_mesh.mesh.points import grid_points, random_points, ring_points
 from fem_mesh.mesh.validators import validate
+from fem_mesh.mesh.voronoi import Voronoi
 from fem_mesh.predicates import in_circle, in_diametral_circle, orient
 from fem_mesh.steps import Step
 from fem_mesh.trace import Trace, record
 
 if TYPE_CHECKING:
+    from fem_mesh.watch.domain_playground import DomainPlayground
     from fem_mesh.watch.picture import Picture
+    from fem_mesh.watch.player import Player, play
+    from fem_mesh.watch.playground import Playground
 
 __version__ = "0.1.0"
 
 __all__ = [
     "Circle",
     "Domain",
+    "DomainPlayground",
     "Mesh",
     "MeshError",
     "Parametric",
     "Picture",
+    "Player",
+    "Playground",
     "Refinement",
     "Region",
     "Step",
     "Trace",
+    "Voronoi",
     "airfoil",
     "annulus",
     "any_triangulation",
@@ -79,6 +88,7 @@ __all__ = [
     "letter",
     "orient",
     "plate_with_hole",
+    "play",
     "random_points",
     "read",
     "record",
@@ -94,9 +104,16 @@ __all__ = [
 ]
 
 
-def __getattr__(name: str) -> Any:
-    if name == "Picture":  # Matplotlib is imported when it is first needed
-        from fem_mesh.watch.picture import Picture
+_SHOWN = {  # what draws and plays is imported when it is first needed: Matplotlib, the widgets
+    "DomainPlayground": "domain_playground",
+    "Picture": "picture",
+    "Player": "player",
+    "Playground": "playground",
+    "play": "player",
+}
 
-        return Picture
+
+def __getattr__(name: str) -> Any:
+    if name in _SHOWN:
+        return getattr(import_module(f"fem_mesh.watch.{_SHOWN[name]}"), name)
     raise AttributeError(f"module 'fem_mesh' has no attribute {name!r}")

@@ -14,11 +14,14 @@ from __future__ import annotations
 
 import hashlib
 import inspect
+import math
 import pickle
 import re
 import sys
 import threading
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
 from typing import Any, TypeVar
 
 import numpy as np
@@ -37,6 +40,7 @@ _sources: dict[str, bytes | None] = {}  # of each module that holds kernels, as 
 _inlined: set[Callable[..., Any]] = set()
 _compiled: dict[Callable[..., Any], Any] = {}
 _lock = threading.RLock()
+_here = threading.local()  # .compiles: what this thread wants, while it wants something
 
 
 def kernel(function: Function) -> Function:
@@ -92,9 +96,10 @@ def run(
     """
     arguments = (tuple(state), EVENTS_A_CALL)
     last = (0, 0)
+    patience = EVENTS_IN_PYTHON if _wanted() is None else math.inf
     if not worth_compiling(generator, arguments, size):
         for count, last in enumerate(watch(generator, state)):
-            if count >= EVENTS_IN_PYTHON and SETTLED <= last[0] < LAST and _numba() is not None:
+            if count >= patience and SETTLED <= last[0] < LAST and _numba() is not None:
                 break  # it was not small after all: compiled code takes over
         else:
             return last
@@ -118,9 +123,48 @@ def call(function: Callable[..., Any], *arguments: Any, size: int) -> Any:
 
 def worth_compiling(function: Callable[..., Any], arguments: tuple[Any, ...], size: int) -> bool:
     """Whether to run ``function`` compiled: it already is for such arguments, or the input is large and Numba is there."""
-    if size > SMALL:
+    wanted = _wanted()
+    if wanted or (size > SMALL and wanted is None):
         return _numba() is not None
-    return function in _compiled and _types(arguments) in _compiled[function].overloads
+    return is_compiled(function) and _types(arguments) in _compiled[function].overloads
+
+
+def is_compiled(function: Callable[..., Any]) -> bool:
+    """Whether this process has ``function`` compiled, for some arguments."""
+    return function in _compiled and bool(_compiled[function].overloads)
+
+
+def is_kept(function: Callable[..., Any]) -> bool:
+    """Whether this machine keeps ``function`` compiled, as the kernels' sources are now."""
+
+    def probe() -> None:  # kept where every driver is
+        pass
+
+    numba = _numba()
+    try:
+        folder = numba and numba.njit(probe, cache=True).stats.cache_path
+    except RuntimeError:  # nowhere to write a cache
+        return False
+    found = Path(folder).glob(f"*{_name_of_driver(function)}-*.nbi") if folder else ()
+    return any(index.stat().st_mtime >= Path(__file__).stat().st_mtime for index in found)  # Numba asks the same
+
+
+@contextmanager
+def compiling(wanted: bool | None) -> Iterator[None]:
+    """What this thread runs is compiled, however small it is, and nothing is said of it; or nothing new is compiled.
+
+    None leaves it to the size, as ever.
+    """
+    before = _wanted()
+    _here.compiles = wanted
+    try:
+        yield
+    finally:
+        _here.compiles = before
+
+
+def _wanted() -> bool | None:
+    return getattr(_here, "compiles", None)
 
 
 def compile_driver(generator: Callable[..., Iterator[tuple[int, int]]], state: Sequence[np.ndarray]) -> Any:
@@ -147,17 +191,18 @@ def compile_call(function: Callable[..., Any], arguments: tuple[Any, ...]) -> An
 
 
 def _compile(function: Callable[..., Any], driver: Callable[..., Any], arguments: tuple[Any, ...]) -> Any:
+    if is_compiled(function) and _types(arguments) in _compiled[function].overloads:
+        return _compiled[function]  # without waiting for what another thread compiles
     with _lock:
         if function not in _compiled:
-            # Numba keeps a cache file a name: one for each kernel, and each state of the kernels' sources.
-            name = f"{function.__module__}_{function.__qualname__}_{_fingerprint(function)[:12]}"
-            driver.__qualname__ = re.sub(r"\W", "_", name)
+            driver.__qualname__ = _name_of_driver(function)
             _compiled[function] = _jit(driver, cache=True)
         types = _types(arguments)
         if types not in _compiled[function].overloads:
             notice = threading.Timer(PATIENCE, _say_compiling, [function.__name__])
             notice.daemon = True
-            notice.start()
+            if not _wanted():  # else nobody waits
+                notice.start()
             try:
                 _compiled[function].compile(types)
             except (OSError, EOFError, pickle.UnpicklingError):  # a full disk, a broken cache: do without
@@ -166,6 +211,11 @@ def _compile(function: Callable[..., Any], driver: Callable[..., Any], arguments
             finally:
                 notice.cancel()
         return _compiled[function]
+
+
+def _name_of_driver(function: Callable[..., Any]) -> str:
+    """Numba keeps a cache file a name: one for each kernel, and each state of the kernels' sources."""
+    return re.sub(r"\W", "_", f"{function.__module__}_{function.__qualname__}_{_fingerprint(function)[:12]}")
 
 
 def _jit(driver: Callable[..., Any], cache: bool) -> Any:
@@ -214,6 +264,8 @@ _registered = 0  # kernels that Numba knows
 def _numba() -> Any:
     """Numba with every kernel registered, or None where it cannot be imported or is switched off."""
     global _numba_module, _registered
+    if _numba_module is not False and _registered == len(_kernels):
+        return _numba_module  # without waiting, as there
     with _lock:
         if _numba_module is False:
             try:

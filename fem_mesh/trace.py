@@ -8,21 +8,24 @@ near as any other, and a trace takes the memory of its changes.
 from __future__ import annotations
 
 import heapq
+import math
 import operator
-from array import array
+import time
 from collections import Counter
 from collections.abc import Generator, Iterable, Iterator, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from fem_mesh.errors import MeshError
+from fem_mesh.lifetimes import Lifetimes
 from fem_mesh.mesh.mesh import Mesh
 from fem_mesh.mesh.points import view_box
 from fem_mesh.mesh.quality import angles
 from fem_mesh.steps import Step, Triangle, many
 
-NEVER = np.iinfo(np.int32).max
+if TYPE_CHECKING:
+    from matplotlib.animation import FuncAnimation
 
 
 class Trace(Sequence[Step]):
@@ -42,7 +45,7 @@ class Trace(Sequence[Step]):
 
     def __init__(self) -> None:
         self._steps: list[Step] = []
-        self._triangles, self._points, self._segments = _Lifetimes("i", 3), _Lifetimes("d", 2), _Lifetimes("i", 2)
+        self._triangles, self._points, self._segments = Lifetimes("i", 3), Lifetimes("d", 2), Lifetimes("i", 2)
         self.view: tuple[float, float, float, float] | None = None
         self.complete = True
         self.mesh: Mesh | None = None
@@ -130,8 +133,21 @@ class Trace(Sequence[Step]):
 
         return draw_step(self, k, *ax, **options)
 
+    def animate(self, fps: float = 2.0, **options: Any) -> FuncAnimation:
+        """The run as a Matplotlib animation, ``fps`` steps a second; ``options`` are those of ``draw``, and ``steps``.
+
+        In a notebook ``HTML(trace.animate().to_jshtml())`` plays it.
+
+        >>> import fem_mesh as fm
+        >>> film = fm.record(fm.bowyer_watson([(0, 0), (4, 0), (0, 3), (3, 2)])).animate(fps=1, steps=[0, 1, 3])
+        >>> film.save("film.gif", writer="pillow")  # doctest: +SKIP
+        """
+        from fem_mesh.watch.film import animate
+
+        return animate(self, fps, **options)
+
     def save(self, path: Any, **options: Any) -> None:
-        """Write the run as a film (.gif, .mp4) or a contact sheet (.png); the ending decides."""
+        """Write the run as a page that plays (.html), a film (.gif, .mp4) or a contact sheet (.png); the ending decides."""
         from fem_mesh.watch.film import save_trace
 
         save_trace(self, path, **options)
@@ -147,9 +163,9 @@ class Trace(Sequence[Step]):
     def _repr_mimebundle_(self, include: Any = None, exclude: Any = None) -> Any:
         if not self._steps:
             return {"text/plain": repr(self)}
-        from fem_mesh.watch.film import picture_of_trace
+        from fem_mesh.watch.page import html_of_trace
 
-        return picture_of_trace(self)._repr_mimebundle_()
+        return {"text/plain": repr(self), "text/html": html_of_trace(self)}
 
     # ---- recording -------------------------------------------------------------------------------
 
@@ -235,24 +251,39 @@ def record(
     >>> trace.mesh
     Mesh: 4 points, 2 triangles, smallest angle 45.0 degrees, a last frame, not validated
     """
-    trace = Trace()
-    trace.view = view
-    iterator = iter(steps)
-    result = None
-    while True:  # ends with the generator, or at the limit
-        try:
-            step = next(iterator)
-        except StopIteration as stop:
-            result = stop.value
-            break
-        if limit is not None and len(trace) >= limit:
-            trace.complete = False
-            break
-        if not isinstance(step, Step):
-            raise MeshError(f"step {len(trace)} is {step!r}: a generator to record must yield fm.Step(...)")
-        trace.append(step)
-    trace.mesh = result if isinstance(result, Mesh) else _last_frame(trace)
-    return trace
+    recording = Recording(steps, view)
+    recording.take(limit)
+    return recording.trace
+
+
+class Recording:
+    """A generator that is being recorded, some steps at a time: ``trace`` is what there is so far."""
+
+    def __init__(self, steps: Iterable[Step], view: tuple[float, float, float, float] | None = None) -> None:
+        self.trace = Trace()
+        self.trace.view = view
+        self.trace.complete = False
+        self._steps = iter(steps)
+        self._waiting: list[Step] = []  # a step that was taken to see whether there is one
+
+    def take(self, limit: int | None, seconds: float = math.inf) -> None:
+        """Record up to ``limit`` further steps, at least one, for some ``seconds``; ``trace.complete`` says if that was all."""
+        trace, begin, end = self.trace, len(self.trace), time.monotonic() + seconds
+        while not trace.complete:  # ends with the generator, or at the limit
+            try:
+                step = self._waiting.pop() if self._waiting else next(self._steps)
+            except StopIteration as stop:
+                trace.complete = True
+                trace.mesh = stop.value if isinstance(stop.value, Mesh) else _last_frame(trace)
+                return
+            taken = len(trace) - begin
+            if (limit is not None and taken >= limit) or (taken and time.monotonic() > end):
+                self._waiting.append(step)
+                trace.mesh = _last_frame(trace)
+                return
+            if not isinstance(step, Step):
+                raise MeshError(f"step {len(trace)} is {step!r}: a generator to record must yield fm.Step(...)")
+            trace.append(step)
 
 
 def _last_frame(trace: Trace) -> Mesh | None:
@@ -272,53 +303,3 @@ def _turned(triangle: Any) -> Triangle:
     """The same triangle with its lowest vertex first."""
     a, b, c = triangle
     return (a, b, c) if a < b and a < c else (b, c, a) if b < c else (c, a, b)
-
-
-class _Lifetimes:
-    """Rows of numbers, each under a key, each with the step that began and the step that ended it."""
-
-    def __init__(self, typecode: str, width: int) -> None:
-        self._rows, self._width = array(typecode), width
-        self._born, self._died, self._keys = array("i"), array("i"), array("i")
-        self.alive: dict[Any, int] = {}
-
-    @property
-    def size(self) -> int:
-        """One more than the highest number among the keys (points only)."""
-        return max(self._keys, default=-1) + 1
-
-    def begin(self, key: Any, row: Any, k: int) -> None:
-        self.alive[key] = len(self._born)
-        self._rows.extend(row)
-        self._born.append(k)
-        self._died.append(NEVER)
-        self._keys.append(key if isinstance(key, int) else 0)
-
-    def end(self, key: Any, k: int) -> bool:
-        row = self.alive.pop(key, None)
-        if row is not None:
-            self._died[row] = k
-        return row is not None
-
-    def current(self) -> dict[Any, tuple[Any, ...]]:
-        w = self._width
-        return {key: tuple(self._rows[w * row : w * row + w]) for key, row in self.alive.items()}
-
-    def table(self) -> np.ndarray:
-        return np.array(self._rows).reshape(-1, self._width)
-
-    def lifetimes(self) -> tuple[np.ndarray, np.ndarray]:
-        return np.array(self._born), np.array(self._died)
-
-    def at(self, k: int) -> tuple[np.ndarray, np.ndarray]:
-        """The keys and rows alive after step k."""
-        born, died = self.lifetimes()
-        alive = (born <= k) & (k < died)
-        return np.array(self._keys)[alive], self.table()[alive]
-
-    def final(self, size: int) -> np.ndarray:
-        """The last row of each key."""
-        result = np.full((size, self._width), np.nan)
-        if size:
-            result[np.array(self._keys)] = self.table()
-        return result

@@ -20,6 +20,7 @@ FLOORS = [
     "steps",
     "textbook",
     "algorithms",
+    "lifetimes",
     "trace",
     "watch",
     "course",
@@ -32,6 +33,7 @@ SHOWING = {  # the methods that show or export import what they call inside them
     ("domain/domain.py", "fem_mesh.files.endings"),
     ("trace.py", "fem_mesh.watch.draw"),
     ("trace.py", "fem_mesh.watch.film"),
+    ("trace.py", "fem_mesh.watch.page"),
 }
 
 

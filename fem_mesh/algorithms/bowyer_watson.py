@@ -14,7 +14,7 @@ expected, and the sort.
 
 from __future__ import annotations
 
-from collections.abc import Generator, Iterable
+from collections.abc import Generator, Iterable, Iterator
 from typing import Any
 
 import numpy as np
@@ -107,8 +107,16 @@ def _watch(work: Workspace) -> Generator[Step, None, Mesh]:
     first = work.corners(0)
     assert first is not None
     yield Step("start", say_start, added=(first,), new_points=[(v, *work.points[v].tolist()) for v in sorted(first)])
-    walked = 0
-    for event, where in watch(insert_points, insertion_state(work)):
+    yield from tell_insertions(work, watch(insert_points, insertion_state(work)))
+    mesh = work.to_mesh()
+    yield Step("done", say_done, n=len(mesh.points) - len(mesh.unused), m=len(mesh.triangles))
+    return mesh
+
+
+def tell_insertions(work: Workspace, events: Iterator[tuple[int, int]]) -> Iterator[Step]:
+    """The events of ``insert_points`` on ``work`` as steps: a locate, then a cavity and an insert, or a merge."""
+    walked = work.state.item(WALKED)
+    for event, where in events:
         if event == LOCATED:
             p = work.name.item(work.state.item(NEXT))
             point = tuple(work.points[p].tolist())
@@ -131,9 +139,6 @@ def _watch(work: Workspace) -> Generator[Step, None, Mesh]:
                 "insert", say_insert, point=point, added=_corners(work, around), removed=doomed, new_points=((p, *point),),
                 p=p, around=len(edges),
             )  # fmt: skip
-    mesh = work.to_mesh()
-    yield Step("done", say_done, n=len(mesh.points) - len(mesh.unused), m=len(mesh.triangles))
-    return mesh
 
 
 def _hull_edge(work: Workspace, t: int) -> tuple[int, int]:

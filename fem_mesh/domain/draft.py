@@ -143,11 +143,13 @@ class Draft:
                 break
             if not split:
                 way_out = 'mend them, or say crossings="split"'
-                raise MeshError(_first(f"{self._say_crossing(*crossings[0])}: {way_out}", len(crossings), "crossing"))
+                told = _first(f"{self._say_crossing(*crossings[0])}: {way_out}", len(crossings), "crossing")
+                raise MeshError(told, self._crossing(*crossings[0]))
             if attempt == ROUNDS:
                 raise MeshError(
                     f"{self._say_crossing(*crossings[0])}, even after {ROUNDS} rounds of splitting: there is no room "
-                    "between the doubles here, and crossing points are rounded; round the points to a coarser grid"
+                    "between the doubles here, and crossing points are rounded; round the points to a coarser grid",
+                    self._crossing(*crossings[0]),
                 )
             splits += self._split(crossings)
         if splits:
@@ -168,9 +170,11 @@ class Draft:
             near = near[(self.points[near, 1] >= low[1]) & (self.points[near, 1] <= high[1])]
             for v in np.setdiff1d(near, self.pairs[i]).tolist():
                 if orient_sign(*ends[0].tolist(), *ends[1].tolist(), *self.points[v].tolist()) == 0:
+                    x, y = self.points[v].tolist()
                     raise MeshError(
                         f"point {v} at {place(self.points, v)} lies on the chord of {self._row(i)}, which is curved: "
-                        "move it, or put it on the curve and end the segment there"
+                        "move it, or put it on the curve and end the segment there",
+                        (x, y),
                     )
 
     def _split(self, crossings: list[list[int]]) -> list[str]:
@@ -256,8 +260,12 @@ class Draft:
         return f"segment {self.source[i]} = ({a}, {b}) from {place(self.points, a)} to {place(self.points, b)}"
 
     def _say_crossing(self, i: int, j: int) -> str:
+        x, y = self._crossing(i, j)
+        return f"{self._row(i)} and {self._row(j)} cross at ({x:.6g}, {y:.6g})"
+
+    def _crossing(self, i: int, j: int) -> tuple[float, float]:
         _, x, y = crossing_place(self.points, self.pairs[i], self.pairs[j])
-        return f"{self._row(i)} and {self._row(j)} cross at ({float(x):.6g}, {float(y):.6g})"
+        return float(x), float(y)
 
     def _say_overlap(self, i: int, j: int) -> str:
         ends = sorted({*self.pairs[i].tolist(), *self.pairs[j].tolist()}, key=lambda v: self.points[v].tolist())

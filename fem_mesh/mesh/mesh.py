@@ -14,7 +14,8 @@ import numpy as np
 from fem_mesh.errors import MeshError
 from fem_mesh.mesh import quality, validators
 from fem_mesh.mesh.locator import Locator
-from fem_mesh.mesh.points import as_points
+from fem_mesh.mesh.points import as_coordinates, as_numbers, as_points
+from fem_mesh.mesh.voronoi import Voronoi, voronoi_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,12 +105,12 @@ class Mesh:
         segments = quality.as_rows(() if segments is None else segments, "segment", "(k, 2)", ("a", "b")).astype(np.int32)
         validators.check_segments(points, triangles, segments)
         k, m = len(segments), len(triangles)
-        rows = {name: _rows(rows, k, f"boundaries[{name!r}]") for name, rows in (boundaries or {}).items()}
-        numbers = None if regions is None else _rows(regions, MOST_REGIONS, "regions", m)
+        rows = {name: quality.numbers_below(rows, k, f"boundaries[{name!r}]") for name, rows in (boundaries or {}).items()}
+        numbers = None if regions is None else quality.numbers_below(regions, MOST_REGIONS, "regions", m)
         self._fill(
             points, triangles, neighbors,
             segments=segments,
-            segment_of=None if segment_of is None else _rows(segment_of, 2**31 - 1, "segment_of", k, lowest=-1),
+            segment_of=None if segment_of is None else quality.numbers_below(segment_of, 2**31 - 1, "segment_of", k, lowest=-1),
             boundaries=rows, regions=numbers, region_names=tuple(region_names), note=note,
         )  # fmt: skip
 
@@ -209,6 +210,25 @@ class Mesh:
         validators.validate(self.points, self.triangles, delaunay=delaunay, touching=self.domain is not None)
         return self
 
+    def cocircular_edges(self) -> np.ndarray:
+        """The inner edges whose two triangles lie on one circle, exactly: int32 (j, 2). Either diagonal is Delaunay.
+
+        >>> import fem_mesh as fm
+        >>> fm.delaunay([(0, 0), (1, 0), (1, 1), (0, 1), (3, 0)]).cocircular_edges().tolist()
+        [[2, 0]]
+        """
+        return quality.cocircular_edges(self.points, self.triangles, self.neighbors)
+
+    def voronoi(self) -> Voronoi:
+        """The Voronoi diagram of the points (see ``Voronoi``). Raises MeshError where the mesh is not Delaunay.
+
+        >>> import fem_mesh as fm
+        >>> fm.delaunay([(0, 0), (2, 0), (0, 2)]).voronoi().vertices.tolist()
+        [[1.0, 1.0]]
+        """
+        self.validate(delaunay=True)
+        return voronoi_of(self)
+
     # ---- questions -------------------------------------------------------------------------------
 
     @cached_property
@@ -225,7 +245,7 @@ class Mesh:
         >>> fm.delaunay([(0, 0), (2, 0), (0, 2)]).find([0.5, 2.0], [0.5, 2.0]).tolist()
         [0, -1]
         """
-        x, y = _broadcast(x, y)
+        x, y = as_coordinates(x, y)
         queries = as_points(np.column_stack([x.ravel(), y.ravel()]))
         found = self._locator.find(queries).reshape(x.shape)
         return int(found) if found.ndim == 0 else found
@@ -237,10 +257,10 @@ class Mesh:
         >>> fm.delaunay([(0, 0), (2, 0), (0, 2)]).interpolate([0, 2, 4], 0.5, 1.0)
         2.5
         """
-        values = _numbers(values, "values")
+        values = as_numbers(values, "values")
         if values.shape != (len(self.points),):
             raise MeshError(f"values must have one number a point, shape ({len(self.points)},), not {values.shape}")
-        x, y = _broadcast(x, y)
+        x, y = as_coordinates(x, y)
         t = np.asarray(self.find(x, y))
         inside = t >= 0
         result = np.full(x.shape, np.nan)
@@ -288,38 +308,7 @@ class Mesh:
         return picture_of_mesh(self)._repr_mimebundle_()
 
 
-def _rows(given: Any, n: int, what: str, length: int | None = None, lowest: int = 0) -> np.ndarray:
-    """``given`` as int32 numbers from ``lowest`` to below ``n``, as many as ``length`` says."""
-    array = np.asarray(given)
-    if array.size == 0:
-        array = np.empty(0, np.int32)
-    if array.dtype.kind not in "iu" or array.ndim != 1 or length not in (None, len(array)):
-        raise MeshError(f"{what} must be {'' if length is None else f'{length} '}whole numbers, not {given!r:.80}")
-    for i in np.flatnonzero((array < lowest) | (array >= n))[:1]:
-        raise MeshError(f"{what} holds {array[i]} at place {i}: numbers there go from {lowest} to {n - 1}")
-    return array.astype(np.int32)
-
-
 def _sealed(array: np.ndarray) -> np.ndarray:
     """A view of ``array`` that cannot be made writeable again."""
     array.flags.writeable = False
     return array.view()
-
-
-def _numbers(values: Any, name: str) -> np.ndarray:
-    try:
-        array = np.asarray(values)
-        if array.dtype.kind in "fiub":
-            return array.astype(np.float64)
-    except ValueError:
-        pass
-    raise MeshError(f"{name} must be real numbers, not {values!r}")
-
-
-def _broadcast(x: Any, y: Any) -> tuple[np.ndarray, np.ndarray]:
-    x, y = _numbers(x, "x"), _numbers(y, "y")
-    try:
-        x, y = np.broadcast_arrays(x, y)
-    except ValueError:
-        raise MeshError(f"x and y must have one shape, not {x.shape} and {y.shape}") from None
-    return x, y

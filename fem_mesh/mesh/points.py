@@ -92,6 +92,27 @@ def _refuse(wrong: np.ndarray, points: np.ndarray, complaint: str) -> None:
         raise MeshError(f"point {rows[0]} = {tuple(points[rows[0]].tolist())} {complaint}{more}")
 
 
+def as_numbers(values: Any, name: str) -> np.ndarray:
+    """``values`` as a new float64 array of their shape."""
+    try:
+        array = np.asarray(values)
+        if array.dtype.kind in "fiub":
+            return array.astype(np.float64)
+    except ValueError:
+        pass
+    raise MeshError(f"{name} must be real numbers, not {values!r}")
+
+
+def as_coordinates(x: Any, y: Any) -> tuple[np.ndarray, np.ndarray]:
+    """``x`` and ``y`` as float64 arrays of one shape."""
+    x, y = as_numbers(x, "x"), as_numbers(y, "y")
+    try:
+        x, y = np.broadcast_arrays(x, y)
+    except ValueError:
+        raise MeshError(f"x and y must have one shape, not {x.shape} and {y.shape}") from None
+    return x, y
+
+
 def view_box(points: np.ndarray) -> tuple[float, float, float, float]:
     """left, right, bottom, top around points (n, 2), nan rows left out, with a margin."""
     points = points[~np.isnan(points[:, 0])]

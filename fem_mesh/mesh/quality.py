@@ -10,7 +10,7 @@ import numpy as np
 
 from fem_mesh.errors import MeshError
 from fem_mesh.kernel import call, kernel
-from fem_mesh.predicates import orient_sign
+from fem_mesh.predicates import IN_CIRCLE_BOUND, in_circle_sign, orient_sign
 
 THIN = 1e-6  # area to the square of the size: flatter triangles are measured in fractions
 
@@ -37,6 +37,18 @@ def as_rows(rows: Any, thing: str, shape: str, row: tuple[str, ...]) -> np.ndarr
     if given.dtype.kind not in "iu":
         raise MeshError(f"{thing}s must be {several[1]} of point numbers (integers), not {given.dtype}")
     return given
+
+
+def numbers_below(given: Any, n: int, what: str, length: int | None = None, lowest: int = 0) -> np.ndarray:
+    """``given`` as int32 numbers from ``lowest`` to below ``n``, as many as ``length`` says."""
+    array = np.asarray(given)
+    if array.size == 0:
+        array = np.empty(0, np.int32)
+    if array.dtype.kind not in "iu" or array.ndim != 1 or length not in (None, len(array)):
+        raise MeshError(f"{what} must be {'' if length is None else f'{length} '}whole numbers, not {given!r:.80}")
+    for i in np.flatnonzero((array < lowest) | (array >= n))[:1]:
+        raise MeshError(f"{what} holds {array[i]} at place {i}: numbers there go from {lowest} to {n - 1}")
+    return array.astype(np.int32)
 
 
 def angles(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
@@ -78,6 +90,31 @@ def circumcircle(ax: float, ay: float, bx: float, by: float, cx: float, cy: floa
     u, v = ux * ux + uy * uy, vx * vx + vy * vy
     x, y = (vy * u - uy * v) / twice, (ux * v - vx * u) / twice
     return ax + x, ay + y, math.hypot(x, y)
+
+
+def circumcenters(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    """The centre of each triangle's circle: float64 (m, 2). Rounded; those of thin triangles from fractions.
+
+    >>> circumcenters(np.array([[0, 0], [2, 0], [0, 2]]), np.array([[0, 1, 2]])).tolist()
+    [[1.0, 1.0]]
+    """
+    a, b, c = (points[triangles[:, k]] for k in range(3))
+    u, v = b - a, c - a
+    twice = 2 * (u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0])
+    uu, vv = (u * u).sum(axis=1), (v * v).sum(axis=1)
+    thin = np.abs(twice) < THIN * np.maximum(uu, vv)
+    over = np.column_stack([v[:, 1] * uu - u[:, 1] * vv, u[:, 0] * vv - v[:, 0] * uu])
+    centers = np.asarray(a + over / np.where(thin, 1.0, twice)[:, None])
+    for t in np.flatnonzero(thin):
+        centers[t] = _exact_center(points[triangles[t]])
+    return centers
+
+
+def _exact_center(corners: np.ndarray) -> tuple[float, float]:
+    (ax, ay), (bx, by), (cx, cy) = ([Fraction(value) for value in corner] for corner in corners.tolist())
+    ux, uy, vx, vy = bx - ax, by - ay, cx - ax, cy - ay
+    u, v, twice = ux * ux + uy * uy, vx * vx + vy * vy, 2 * (ux * vy - uy * vx)
+    return float(ax + (vy * u - uy * v) / twice), float(ay + (ux * v - vx * u) / twice)
 
 
 def exact_area(points: np.ndarray, triangles: np.ndarray) -> Fraction:
@@ -144,3 +181,44 @@ def turn(points, a, b, c):
 def fill_turns(points, triangles, turns):
     for t in range(len(turns)):
         turns[t] = turn(points, triangles[t, 0], triangles[t, 1], triangles[t, 2])
+
+
+# ---- ties ------------------------------------------------------------------------------------------
+
+
+def cocircular_edges(points: np.ndarray, triangles: np.ndarray, neighbors: np.ndarray) -> np.ndarray:
+    """The inner edges whose two triangles lie on one circle, exactly: int32 (j, 2). Either diagonal is Delaunay.
+
+    >>> square = np.array([[0, 0], [1, 0], [1, 1], [0, 1.0]])
+    >>> cocircular_edges(square, np.array([[0, 1, 2], [0, 2, 3]]), np.array([[-1, 1, -1], [-1, -1, 0]])).tolist()
+    [[2, 0]]
+    """
+    t, i = ties(points, triangles, neighbors)
+    return np.column_stack([triangles[t, (i + 1) % 3], triangles[t, (i + 2) % 3]])
+
+
+def ties(points: np.ndarray, triangles: np.ndarray, neighbors: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The triangles and their corners whose neighbour across from there lies on the same circle: each pair once."""
+    t, i = np.nonzero(neighbors > np.arange(len(triangles))[:, None])
+    a, b, c = (triangles[t, (i + k) % 3] for k in range(3))
+    d = triangles[neighbors[t, i]].sum(axis=1) - b - c
+    x, y = np.moveaxis(points[np.array([a, b, c])] - points[d], -1, 0)
+    after, last = [1, 2, 0], [2, 0, 1]
+    left, right, lift = x[after] * y[last], x[last] * y[after], x * x + y * y
+    det, permanent = (lift * (left - right)).sum(axis=0), (lift * (np.abs(left) + np.abs(right))).sum(axis=0)
+    open_ = np.flatnonzero(np.abs(det) <= IN_CIRCLE_BOUND * permanent)  # the others are no ties: see in_circle_sign
+    corners, tied = np.column_stack([a, b, c, d])[open_], np.empty(len(open_), bool)
+    call(find_ties, points, corners, tied, size=len(corners))
+    return t[open_[tied]], i[open_[tied]]
+
+
+@kernel
+def find_ties(points, corners, tied):
+    for k in range(len(corners)):
+        a, b, c, d = corners[k, 0], corners[k, 1], corners[k, 2], corners[k, 3]
+        tied[k] = (
+            in_circle_sign(
+                points[a, 0], points[a, 1], points[b, 0], points[b, 1],
+                points[c, 0], points[c, 1], points[d, 0], points[d, 1],
+            ) == 0.0
+        )  # fmt: skip

@@ -183,6 +183,8 @@ def boundary_edges(points: np.ndarray, triangles: np.ndarray) -> tuple[np.ndarra
 
 def find_crossing(points: np.ndarray, starts: np.ndarray, ends: np.ndarray) -> tuple[Any, Any] | None:
     """Two boundary edges that share more than an end, or None: a sweep over their extents."""
+    if not len(starts):
+        return None
     low, high = np.minimum(points[starts], points[ends]), np.maximum(points[starts], points[ends])
     lengths, extent = (high - low).sum(axis=0), np.ptp(points, axis=0)
     axis = int(lengths[1] * extent[0] < lengths[0] * extent[1])  # the one along which fewer edges overlap
@@ -296,16 +298,19 @@ def on_a_line(points: np.ndarray) -> bool:
 
 
 def _count_pieces(triangles: np.ndarray, n: int) -> int:
-    """Connected pieces: labels spread along edges, halving the paths, until none changes."""
+    return len(np.unique(connect(n, triangles.ravel(), np.roll(triangles, -1, axis=1).ravel())[triangles]))
+
+
+def connect(n: int, a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """For each of n things the lowest one that it is connected with, if each of ``a`` is with that of ``b``: int64 (n,)."""
     label = np.arange(n)
-    a, b = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
-    while True:  # labels only ever fall
+    while True:  # labels only ever fall: they spread along the pairs, halving the paths
         before = label.copy()
         np.minimum.at(label, a, label[b])
         np.minimum.at(label, b, label[a])
         label = label[label]
         if (label == before).all():
-            return len(np.unique(label[a]))
+            return label
 
 
 def _row(triangles: np.ndarray, t: int) -> tuple[int, ...]:

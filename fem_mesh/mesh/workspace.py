@@ -72,6 +72,12 @@ class Workspace:
         )
 
     @classmethod
+    def with_room(cls, n: int) -> Workspace:
+        """Room for ``n`` points to come, and no triangle yet: vertex ``v`` will be point ``v - 1``."""
+        xy = np.zeros((n + 1, 2))
+        return cls._with_room(xy[1:], np.arange(-1, n, dtype=np.int32), xy)
+
+    @classmethod
     def of_points(cls, points: np.ndarray, order: np.ndarray, chains: bool = False) -> Workspace:
         """Room to insert ``points`` one by one in ``order``, begun with the first triangle; ``chains``: segments too.
 

@@ -1,4 +1,4 @@
-"""A trace as a film (.gif, .mp4) or a contact sheet (.png)."""
+"""A trace as a film (.gif, .mp4), a contact sheet (.png) or a page (.html)."""
 
 from __future__ import annotations
 
@@ -8,11 +8,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from matplotlib.animation import FFMpegWriter, FuncAnimation, PillowWriter
 from matplotlib.figure import Figure
 from tqdm import tqdm
 
 from fem_mesh.errors import MeshError
 from fem_mesh.watch.draw import draw_step, new_axes
+from fem_mesh.watch.page import save_page
 from fem_mesh.watch.picture import DPI, Picture, picture_of
 from fem_mesh.watch.style import PAPER
 
@@ -26,6 +28,7 @@ HOLD = 2.0  # seconds that a film rests on its last frame
 def save_trace(trace: Trace, path: Any, *, fps: float = 2.0, steps: Iterable[int] | None = None, **options: Any) -> None:
     """Write a trace to ``path``; the ending decides what it becomes.
 
+    .html : a page that plays, anywhere and without a network; as it stands, the first frame and all steps in words
     .gif, .mp4 : a film, ``fps`` steps a second; .mp4 needs the program ffmpeg
     .png : a contact sheet of some 12 steps, or of the ``steps`` given
 
@@ -40,10 +43,33 @@ def save_trace(trace: Trace, path: Any, *, fps: float = 2.0, steps: Iterable[int
         raise MeshError("there is no step to save: steps is empty")
     if path.suffix.lower() == ".png":
         contact_sheet(trace, chosen, **options).save(path)
+    elif path.suffix.lower() == ".html":
+        save_page(trace, path, chosen, **options)
     elif path.suffix.lower() in (".gif", ".mp4"):
         _save_film(trace, path, fps, chosen or range(len(trace)), options)
     else:
-        raise MeshError(f"a trace is saved as .gif, .mp4 or .png, not as {path.suffix or path.name!r}")
+        raise MeshError(f"a trace is saved as .html, .gif, .mp4 or .png, not as {path.suffix or path.name!r}")
+
+
+class Animation(FuncAnimation):
+    """Matplotlib's, which may be thrown away without having been shown."""
+
+    def __del__(self) -> None:
+        pass  # Matplotlib's would warn
+
+
+def animate(trace: Trace, fps: float = 2.0, *, steps: Iterable[int] | None = None, **options: Any) -> Animation:
+    """The steps of a trace, all or those given, as a Matplotlib animation; ``options`` are those of ``draw_step``."""
+    frames = list(range(len(trace)) if steps is None else steps)
+    if not frames:
+        raise MeshError("there is no step to animate: " + ("the trace is empty" if steps is None else "steps is empty"))
+    page = new_axes(bool(options.get("dark", False)))
+    assert isinstance(page.figure, Figure)
+
+    def draw(k: int) -> None:
+        draw_step(trace, k, page, **options)
+
+    return Animation(page.figure, draw, frames, init_func=lambda: None, interval=1000 / fps, cache_frame_data=False)
 
 
 def contact_sheet(trace: Trace, steps: Iterable[int] | None = None, **options: Any) -> Picture:
@@ -78,17 +104,14 @@ def choose_steps(n: int) -> list[int]:
 
 
 def _save_film(trace: Trace, path: Path, fps: float, steps: Iterable[int], options: dict[str, Any]) -> None:
-    from matplotlib.animation import FFMpegWriter, FuncAnimation, PillowWriter
-
     if path.suffix.lower() == ".mp4" and shutil.which("ffmpeg") is None:
         raise MeshError("an .mp4 needs the program ffmpeg, which is not installed: save a .gif instead")
-    page = new_axes(bool(options.get("dark", False)))
     frames = list(steps)
     frames += frames[-1:] * int(HOLD * fps)
-    film = FuncAnimation(page.figure, lambda k: (draw_step(trace, k, page, **options),), frames, init_func=lambda: ())  # type: ignore[arg-type, return-value]
+    film = animate(trace, fps, steps=frames, **options)
     writer = PillowWriter(fps=fps) if path.suffix.lower() == ".gif" else FFMpegWriter(fps=fps)  # type: ignore[arg-type]
     with tqdm(total=len(frames), desc=path.name, delay=2, leave=False) as bar:
         film.save(
-            str(path), writer=writer, dpi=DPI, savefig_kwargs={"facecolor": page.figure.get_facecolor()},
+            str(path), writer=writer, dpi=DPI, savefig_kwargs={"facecolor": PAPER[bool(options.get("dark", False))]},
             progress_callback=lambda _frame, _total: bar.update(),
         )  # fmt: skip

@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.collections import LineCollection
 from matplotlib.colors import to_rgb
 
 from fem_mesh.mesh.points import view_box
-from fem_mesh.watch.draw import MOST_NUMBERS, _caption, _edges, _legend, _markers, _numbers, _set_view, new_axes
+from fem_mesh.watch.draw import _caption, _legend, _set_view, draw_layers, new_axes
+from fem_mesh.watch.layers import MOST_NUMBERS, Layer, numbers_of
 from fem_mesh.watch.picture import Picture, picture_of
 from fem_mesh.watch.style import INK, PAPER, ROLES, color_of
 
@@ -52,27 +52,31 @@ def plot_domain(
     page = new_axes(dark) if ax is None else ax
     page.clear()
     _set_view(page, _view_of(domain), dark)
-    shown: list[str] = []
-    inside = _inside(page, domain, dark, shown)
-    _edges(page, domain.points, domain.segments.tolist(), dark, shown, role="segment")
-    _curves(page, domain, dark, shown)
+    inside = _inside(page, domain, dark)
     lengths = np.hypot(*np.diff(_on_page(page, domain.points)[domain.segments], axis=1)[:, 0].T)
     room = np.quantile(lengths, 0.2) if len(lengths) else np.inf
-    if room >= CROWDED:
-        _markers(page, domain.points, "vertex", dark, shown)
-    _markers(page, domain.holes, "hole", dark, shown)
-    _markers(page, np.array([(r.x, r.y) for r in domain.regions]), "region", dark, shown)
+    layers = _layers(page, domain, marked=room >= CROWDED)
+    numbered = bool(numbers or (numbers is None and len(domain.points) <= MOST_NUMBERS and room >= ROOMY))
+    draw_layers(page, [*layers, numbers_of(domain.points)] if numbered else layers, dark)
     for region in domain.regions:
         _write(page, region.name, _on_page(page, (region.x, region.y))[0], (0.0, LINE), dark)
-    numbered = bool(numbers or (numbers is None and len(domain.points) <= MOST_NUMBERS and room >= ROOMY))
-    if numbered:
-        _numbers(page, domain.points, dark)
     _names(page, domain, inside, numbered, dark)
     if legend:
-        _legend(page, shown, dark)
+        _legend(page, ["inside"] * bool(page.images) + [layer.role for layer in layers], dark)
     head, text = ("Domain", repr(domain).removeprefix("Domain: ")) if title is None else (title, "")
     _caption(page, head, text, dark)
     return page if ax is not None else picture_of(page, repr(domain) if title is None else title)
+
+
+def _layers(page: Axes, domain: Domain, marked: bool) -> list[Layer]:
+    layers = [
+        Layer("segment", "lines", domain.points[domain.segments]),
+        Layer("curve", "lines", _curves(page, domain)),
+        Layer("vertex", "markers", domain.points if marked else domain.points[:0]),
+        Layer("hole", "markers", domain.holes),
+        Layer("region", "markers", np.array([(r.x, r.y) for r in domain.regions]).reshape(-1, 2)),
+    ]
+    return [layer for layer in layers if len(layer.places)]
 
 
 def _view_of(domain: Domain) -> Box:
@@ -87,7 +91,7 @@ def _on_page(page: Axes, points: Any) -> np.ndarray:
     return np.asarray(page.transData.transform(np.asarray(points).reshape(-1, 2))) * 72 / page.figure.dpi
 
 
-def _inside(page: Axes, domain: Domain, dark: bool, shown: list[str]) -> np.ndarray:
+def _inside(page: Axes, domain: Domain, dark: bool) -> np.ndarray:
     """Shade what lies inside an odd number of loops; returns the raster, which covers the page."""
     if len(domain.holes) or not domain.toggles.any():
         return np.zeros((1, 1), bool)
@@ -98,7 +102,6 @@ def _inside(page: Axes, domain: Domain, dark: bool, shown: list[str]) -> np.ndar
     image[..., :3] = to_rgb(color_of("inside", dark))
     image[..., 3] = ROLES["inside"].fill * mask
     page.imshow(image, extent=box, origin="lower", aspect="equal", interpolation="nearest", zorder=0.5)
-    shown.append("inside")
     return mask
 
 
@@ -121,21 +124,16 @@ def inside_mask(points: np.ndarray, pairs: np.ndarray, box: Box, rows: int, colu
     return np.asarray(crossed.cumsum(axis=1)[:, :columns] % 2 == 1)
 
 
-def _curves(page: Axes, domain: Domain, dark: bool, shown: list[str]) -> None:
-    """The curves that can be told from their chords."""
+def _curves(page: Axes, domain: Domain) -> np.ndarray:
+    """The curves that can be told from their chords, each by ARC chords: float64 (n, ARC + 1, 2)."""
     view = max(np.ptp(page.get_xlim()), np.ptp(page.get_ylim()))
     lines = []
     for row, curve in domain.curves.items():
         a, b = (tuple(domain.points[v].tolist()) for v in domain.segments[row])
         middle = np.array(curve.between(a, b))
         if np.hypot(*(middle - (np.array(a) + b) / 2)) > VISIBLE * view:
-            lines.append(np.array(_arc(curve, a, b, ARC)))
-    if lines:
-        role = ROLES["curve"]
-        arcs = LineCollection(lines, colors=color_of("curve", dark), linewidths=role.width, zorder=3.1)
-        arcs.set_linestyle((0, role.dash))
-        page.add_collection(arcs)
-        shown.append("curve")
+            lines.append(_arc(curve, a, b, ARC))
+    return np.array(lines).reshape(-1, ARC + 1, 2)
 
 
 def _arc(curve: Any, a: Any, b: Any, n: int) -> list[Any]:

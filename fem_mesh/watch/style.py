@@ -6,7 +6,8 @@ so that colour never carries meaning alone; and the word that captions and legen
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
+from typing import Any
 
 BLACK, ORANGE, SKY, GREEN = "#000000", "#E69F00", "#56B4E9", "#009E73"
 BLUE, VERMILLION, PURPLE = "#0072B2", "#D55E00", "#CC79A7"
@@ -42,11 +43,22 @@ ROLES = {
     "vertex": Role("vertex", "#222222", "#DDDDDD", marker="o", size=4.5),
     "waiting": Role("to come", "#888888", "#888888", marker="o", size=3.5),
     "point": Role("point", PURPLE, "#F29BC9", width=2.4, marker="o", size=13.0),
+    "voronoi": Role("Voronoi edge", GREEN, "#2FD1A2", width=1.5, dash=(4.0, 1.5, 1.0, 1.5)),
+    "tie": Role("cocircular: either diagonal would do", PURPLE, "#F29BC9", width=2.6, dash=(2.0, 1.2)),
+    "skinny": Role("skinny", ORANGE, ORANGE, width=1.0, fill=0.6),
     "inside": Role("inside", SKY, BLUE, width=0.0, fill=0.22),
     "curve": Role("its curve", PURPLE, "#F29BC9", width=1.6, dash=(3.0, 1.5)),
     "hole": Role("in a hole", VERMILLION, "#FF8A4C", width=2.6, marker="x", size=9.0),
+    "spot": Role("small triangles wanted", PURPLE, "#F29BC9", width=1.3, marker="o", size=7.0),
     "region": Role("region", GREEN, "#2FD1A2", width=1.0, marker="D", size=8.0),
 }
+
+KINDS = {  # of steps: the role whose colour a kind wears where all steps are seen at once
+    "locate": "visited", "test": "visited", "cavity": "doomed", "cross": "doomed", "carve": "doomed", "clear": "doomed",
+    "remove": "doomed", "encroached": "doomed", "skinny": "doomed", "large": "doomed", "long": "doomed",
+    "insert": "new", "flip": "new", "segment": "new", "split": "new", "steiner": "new", "lift": "new", "move": "point",
+    "merge": "edge", "reject": "edge", "skip": "edge", "precision": "edge", "budget": "edge",
+}  # fmt: skip
 
 PAPER = {False: "#FFFFFF", True: "#111318"}
 INK = {False: "#1A1A1A", True: "#EDEDED"}
@@ -55,3 +67,12 @@ INK = {False: "#1A1A1A", True: "#EDEDED"}
 def color_of(name: str, dark: bool = False) -> str:
     """The colour of a role on a light or a dark ground."""
     return ROLES[name].dark if dark else ROLES[name].color
+
+
+def as_table() -> dict[str, Any]:
+    """All of this as the browser takes it; what a role has by default is left out."""
+    roles = {
+        name: {f.name: getattr(role, f.name) for f in fields(role) if getattr(role, f.name) != f.default}
+        for name, role in ROLES.items()
+    }
+    return {"roles": roles, "paper": list(PAPER.values()), "ink": list(INK.values()), "kinds": KINDS}

@@ -1,0 +1,38 @@
+"""What the live widgets have in common: an anywidget, and a still picture for where it does not live.
+
+A displayed widget is two outputs. The first is plain HTML: it is hidden while the second, the widget itself, is
+alive; it is what remains in an exported page, in a notebook opened again, and where anywidget's front end is missing.
+"""
+
+from __future__ import annotations
+
+import zlib
+from typing import Any
+
+import traitlets
+from anywidget import AnyWidget
+from IPython.display import display
+
+from fem_mesh.watch.front import css
+
+VIEW = "application/vnd.jupyter.widget-view+json"
+
+
+class Live(AnyWidget):
+    """A widget with a still picture beside it."""
+
+    _css = css()
+    key = traitlets.Unicode().tag(sync=True)  # ties the widget to its still picture
+
+    def still(self, key: str) -> str:
+        """HTML that stands in for the widget where ``key`` is not alive."""
+        raise NotImplementedError
+
+    def _ipython_display_(self) -> None:
+        still = self.still("KEY")
+        self.key = f"{type(self).__name__}-{zlib.crc32(still.encode()):08x}"  # the same in every run
+        display({"text/plain": repr(self), "text/html": still.replace('"KEY"', f'"{self.key}"')}, raw=True)
+        data = self._repr_mimebundle_()
+        bundle: Any = data[0] if isinstance(data, tuple) else data
+        if bundle and VIEW in bundle:
+            display({VIEW: bundle[VIEW]}, raw=True)
