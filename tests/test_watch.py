@@ -105,10 +105,13 @@ def test_an_unknown_ending_and_an_empty_trace_are_refused(trace, tmp_path):
         fm.record([]).save(tmp_path / "none.gif")
 
 
-def test_meshes_and_traces_show_a_picture_under_their_line_of_facts(trace):
-    for thing in (trace, fm.delaunay(fm.random_points(9)), fm.delaunay([(0, 0), (1, 1)]), fm.delaunay([])):
+def test_meshes_show_a_picture_and_traces_a_page_under_their_line_of_facts(trace):
+    for thing in (fm.delaunay(fm.random_points(9)), fm.delaunay([(0, 0), (1, 1)]), fm.delaunay([])):
         data, metadata = thing._repr_mimebundle_()
         assert data["text/plain"] == repr(thing) == metadata["image/png"]["alt"]
+    data = trace._repr_mimebundle_()
+    assert data["text/plain"] == repr(trace)
+    assert f"<p>{trace!r}</p>" in data["text/html"]
 
 
 @pytest.mark.parametrize("height", [1e-3, 1e-7, 1e-12, 1e-30])

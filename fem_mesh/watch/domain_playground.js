@@ -68,7 +68,7 @@ class DomainPlayground {
   }
 
   hear(message, buffers) {
-    if (message.type === "steps") return this.stage.play(message);
+    if (message.type === "steps") return message.serial === this.me && this.stage.play(message);
     const mine = message.serial === `${this.me} ${this.serial}`;
     if (message.serial && !message.serial.startsWith(this.me)) return this.catchUp(message); // the answer to another view
     if (mine) this.hearAnswer();
@@ -106,12 +106,13 @@ class DomainPlayground {
   }
 
   begin({ drawn, box, shapes, to }) {
-    this.drawing.begin(drawn, { first: !this.begun || to === "hello" });
+    const caughtUp = this.begun && to === "hello";
+    this.drawing.begin(drawn, { first: !this.begun || caughtUp });
     this.begun = true;
     this.acknowledged = this.drawing.version;
     this.pencil.rest();
     this.controls.showShapes(shapes);
-    this.setBox(box);
+    if (!caughtUp) this.setBox(box);
   }
 
   setBox([left, right, bottom, top]) {
@@ -201,7 +202,7 @@ class DomainPlayground {
   record() {
     if (!this.canPlay) return;
     this.say("recording the steps ...");
-    this.post({ type: "steps" });
+    this.post({ type: "steps", serial: this.me });
   }
 
   // ---- showing -----------------------------------------------------------------------------------

@@ -201,7 +201,7 @@ class DomainPlayground(Live):
             ahead.compile_ahead()
             self._tell(serial, drawn=True, to="hello")
         elif kind == "steps":
-            self._send_steps()
+            self._send_steps(serial)
         elif kind == "ask":
             try:
                 self._ask(serial, message)
@@ -257,11 +257,11 @@ class DomainPlayground(Live):
             return PAGE[1] - PAGE[0]
         return float(np.ptp(np.array(self._sketch.points), axis=0).max())
 
-    def _send_steps(self) -> None:
+    def _send_steps(self, serial: str | None) -> None:
         trace = self.trace
         if trace is not None:
             cut = "" if trace.complete else f"the first {len(trace):,} steps of it: the run goes on"
-            self.send({"type": "steps", "data": as_data(trace), "cut": cut})
+            self.send({"type": "steps", "serial": serial, "data": as_data(trace), "cut": cut})
 
     # ---- showing -----------------------------------------------------------------------------------
 
@@ -273,7 +273,7 @@ class DomainPlayground(Live):
         return html_of_picture(svg, f"{self!r}; {say_state(self.mesh)}" if svg else repr(self), key, NOTE)
 
     def __repr__(self) -> str:
-        if not self._sketch.segments:
+        if self.domain is None and not self.refusal:
             return "DomainPlayground: nothing is drawn yet"
         facts = [many(len(self._sketch.points), "corner")]
         if self.mesh is None:

@@ -80,10 +80,10 @@ class Sketch:
         return self.given is not None and self == Sketch.of(self.given, self.start)
 
     def to_domain(self) -> Domain | None:
-        """The domain, or None while there is no segment. Raises MeshError as ``Domain`` does."""
+        """The domain, or None while there is no corner. Raises MeshError as ``Domain`` does."""
         if self.is_untouched:
             return self.given
-        if not self.segments:
+        if not self.points:
             return None
         loops = self._loops()
         if loops is not None:
