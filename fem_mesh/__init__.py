@@ -44,11 +44,12 @@ from fem_mesh.mesh.points import grid_points, random_points, ring_points
 from fem_mesh.mesh.validators import validate
 from fem_mesh.mesh.voronoi import Voronoi
 from fem_mesh.predicates import in_circle, in_diametral_circle, orient
+from fem_mesh.recording import record
 from fem_mesh.steps import Step
-from fem_mesh.trace import Trace, record
+from fem_mesh.trace import Trace
 
 if TYPE_CHECKING:
-    from fem_mesh.watch.domain_playground import DomainPlayground
+    from fem_mesh.watch.domain_playground.widget import DomainPlayground
     from fem_mesh.watch.picture import Picture
     from fem_mesh.watch.player import Player, play
     from fem_mesh.watch.playground import Playground
@@ -105,7 +106,7 @@ __all__ = [
 
 
 _SHOWN = {  # what draws and plays is imported when it is first needed: Matplotlib, the widgets
-    "DomainPlayground": "domain_playground",
+    "DomainPlayground": "domain_playground.widget",
     "Picture": "picture",
     "Player": "player",
     "Playground": "playground",

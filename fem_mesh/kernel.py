@@ -129,6 +129,11 @@ def worth_compiling(function: Callable[..., Any], arguments: tuple[Any, ...], si
     return is_compiled(function) and _types(arguments) in _compiled[function].overloads
 
 
+def can_compile() -> bool:
+    """Whether Numba is there and may be used."""
+    return _numba() is not None
+
+
 def is_compiled(function: Callable[..., Any]) -> bool:
     """Whether this process has ``function`` compiled, for some arguments."""
     return function in _compiled and bool(_compiled[function].overloads)

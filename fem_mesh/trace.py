@@ -10,10 +10,9 @@ from __future__ import annotations
 import heapq
 import math
 import operator
-import time
 from collections import Counter
-from collections.abc import Generator, Iterable, Iterator, Sequence
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
@@ -26,6 +25,9 @@ from fem_mesh.steps import Step, Triangle, many
 
 if TYPE_CHECKING:
     from matplotlib.animation import FuncAnimation
+
+
+SHOWN = {"visited": 3, "doomed": 3, "circles": 3, "edges": 2, "asked": 2, "encroached": 2}  # how many numbers each row has
 
 
 class Trace(Sequence[Step]):
@@ -76,6 +78,10 @@ class Trace(Sequence[Step]):
     def segments(self, k: int) -> np.ndarray:
         """The edges that are segments after step ``k``: int32 (j, 2)."""
         return self._segments.at(range(len(self))[k])[1]
+
+    def lifetimes(self, of: Literal["points", "triangles", "segments"]) -> Lifetimes:
+        """Everything of a kind that ever was, with the step that brought it and the step that took it."""
+        return {"points": self._points, "triangles": self._triangles, "segments": self._segments}[of]
 
     @property
     def makes_points(self) -> bool:
@@ -194,29 +200,33 @@ class Trace(Sequence[Step]):
         self._steps.append(step)
 
     def _difference(self, step: Step) -> Step:
-        k = len(self._steps)
+        new, dropped = [], []
         if step.points is not None:
-            given = [tuple(map(float, p)) for p in step.points]
+            given = self._read_points(step)
             known = self._points.current()
             new = [(i, *p) for i, p in enumerate(given) if known.get(i) != p]
-            for number in [i for i in known if i >= len(given)]:
-                self._points.end(number, k)
-        else:
-            new = []
+            dropped = [i for i in known if i >= len(given)]
+        self._check_shown(step)
         before = self._triangles.current()
         now = before if step.triangles is None else {_turned(t): t for t in self._read_triangles(step)}
         return Step(
             step.kind, step._caption,
             added=[t for key, t in now.items() if key not in before],
             removed=[t for key, t in before.items() if key not in now],
-            new_points=new, gone_points=step.gone_points, point=step.point, edges=step.edges, doomed=step.doomed,
+            new_points=new, gone_points=[*step.gone_points, *dropped], point=step.point, edges=step.edges, doomed=step.doomed,
             visited=step.visited, circles=step.circles, new_segments=step.new_segments, gone_segments=step.gone_segments,
             asked=step.asked, encroached=step.encroached, **step.facts,
         )  # fmt: skip
 
+    def _read_points(self, step: Step) -> list[tuple[float, ...]]:
+        points = [tuple(map(float, p)) for p in step.points]
+        for i, p in enumerate(points):
+            if len(p) != 2 or not (math.isfinite(p[0]) and math.isfinite(p[1])):
+                raise MeshError(f"step {len(self)} ({step.kind}): point {i} = {p} is no pair of finite numbers")
+        return points
+
     def _read_triangles(self, step: Step) -> list[Triangle]:
-        k, n = len(self._steps), len(step.points) if step.points is not None else self._points.size
-        result = []
+        k, n, result = len(self), self._count(step), list[Triangle]()
         for t in step.triangles:
             try:
                 a, b, c = map(operator.index, t)
@@ -229,74 +239,17 @@ class Trace(Sequence[Step]):
             result.append((a, b, c))
         return result
 
+    def _check_shown(self, step: Step) -> None:
+        n = self._count(step)
+        for name, width in SHOWN.items():
+            for row in getattr(step, name):
+                if len(row) != width or not all(isinstance(i, int | np.integer) and 0 <= i < n for i in row):
+                    what = f"{name} hold {row!r}, which are no {width} numbers of points: there are {n}"
+                    raise MeshError(f"step {len(self)} ({step.kind}): {what}")
 
-def record(
-    steps: Iterable[Step] | Generator[Step, None, Any],
-    limit: int | None = 200_000,
-    view: tuple[float, float, float, float] | None = None,
-) -> Trace:
-    """Run a generator of steps to its end, or to ``limit`` steps, and keep them all.
-
-    ``view`` = (left, right, bottom, top) fixes what pictures show; without it they show every point.
-    A generator that is still running after ``limit`` steps gives an incomplete trace, which says so.
-
-    >>> def two_triangles():
-    ...     points, triangles = [(0, 0), (1, 0), (0, 1), (1, 1)], [(0, 1, 2)]
-    ...     yield Step("start", "one triangle", points=points, triangles=triangles)
-    ...     triangles.append((1, 3, 2))
-    ...     yield Step("insert", "and another", points=points, triangles=triangles)
-    >>> trace = record(two_triangles())
-    >>> trace[1].added
-    ((1, 3, 2),)
-    >>> trace.mesh
-    Mesh: 4 points, 2 triangles, smallest angle 45.0 degrees, a last frame, not validated
-    """
-    recording = Recording(steps, view)
-    recording.take(limit)
-    return recording.trace
-
-
-class Recording:
-    """A generator that is being recorded, some steps at a time: ``trace`` is what there is so far."""
-
-    def __init__(self, steps: Iterable[Step], view: tuple[float, float, float, float] | None = None) -> None:
-        self.trace = Trace()
-        self.trace.view = view
-        self.trace.complete = False
-        self._steps = iter(steps)
-        self._waiting: list[Step] = []  # a step that was taken to see whether there is one
-
-    def take(self, limit: int | None, seconds: float = math.inf) -> None:
-        """Record up to ``limit`` further steps, at least one, for some ``seconds``; ``trace.complete`` says if that was all."""
-        trace, begin, end = self.trace, len(self.trace), time.monotonic() + seconds
-        while not trace.complete:  # ends with the generator, or at the limit
-            try:
-                step = self._waiting.pop() if self._waiting else next(self._steps)
-            except StopIteration as stop:
-                trace.complete = True
-                trace.mesh = stop.value if isinstance(stop.value, Mesh) else _last_frame(trace)
-                return
-            taken = len(trace) - begin
-            if (limit is not None and taken >= limit) or (taken and time.monotonic() > end):
-                self._waiting.append(step)
-                trace.mesh = _last_frame(trace)
-                return
-            if not isinstance(step, Step):
-                raise MeshError(f"step {len(trace)} is {step!r}: a generator to record must yield fm.Step(...)")
-            trace.append(step)
-
-
-def _last_frame(trace: Trace) -> Mesh | None:
-    if not len(trace):
-        return None
-    points, triangles = trace.frame(-1)
-    there = np.flatnonzero(~np.isnan(points[:, 0]))
-    points = points[: there[-1] + 1 if len(there) else 0]
-    note = "a last frame, not validated"
-    try:
-        return Mesh(points, triangles, note=note)
-    except MeshError:  # broken, or with gaps among its points: to look at, all the same
-        return Mesh._of(points, triangles, np.full((len(triangles), 3), -1, np.int32), note=note)
+    def _count(self, step: Step) -> int:
+        """How many points a step with full lists may speak of."""
+        return max(len(step.points) if step.points is not None else 0, self._points.size)
 
 
 def _turned(triangle: Any) -> Triangle:

@@ -1,3 +1,4 @@
+import pytest
 from hypothesis import settings
 
 settings.register_profile("default", deadline=None, max_examples=60, derandomize=True)
@@ -13,3 +14,9 @@ def pytest_ignore_collect(collection_path, config):
     """Benchmarks run when they are asked for: ``pytest tests/benchmarks``."""
     if collection_path.name == "benchmarks" and not any("benchmarks" in str(arg) for arg in config.invocation_params.args):
         return True
+
+
+@pytest.fixture(autouse=True)
+def nothing_compiles_ahead(monkeypatch):
+    """No widget of a test starts to compile in the background."""
+    monkeypatch.setattr("fem_mesh.algorithms.ahead.compile_ahead", lambda: None)

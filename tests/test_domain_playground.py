@@ -1,6 +1,5 @@
 """The domain playground in Python: what the browser asks, what it is told, and the code that makes a mesh again."""
 
-import json
 import math
 import os
 import pickle
@@ -10,6 +9,7 @@ import time
 from pathlib import Path
 
 import ipywidgets
+import listening
 import numpy as np
 import pytest
 import traitlets
@@ -19,9 +19,9 @@ from hypothesis import strategies as st
 import fem_mesh as fm
 from fem_mesh import kernel
 from fem_mesh.algorithms import ahead
-from fem_mesh.watch import domain_playground as module
-from fem_mesh.watch.sketch import SHAPES, Sketch
-from fem_mesh.watch.tell import encroached_segments
+from fem_mesh.watch.domain_playground import widget as module
+from fem_mesh.watch.domain_playground.sketch import SHAPES, Sketch
+from fem_mesh.watch.domain_playground.tell import encroached_segments
 
 TRIANGLE = [[0, 0], [4, 0], [0, 3]]
 LOOP = [[0, 1, -1, False], [1, 2, -1, False], [2, 0, -1, False]]
@@ -41,22 +41,11 @@ GIVEN = {
 }
 
 
-@pytest.fixture(autouse=True)
-def nothing_compiles(monkeypatch):
-    monkeypatch.setattr(ahead, "compile_ahead", lambda: None)
-
-
-class Heard:
-    """A playground whose browser is a list."""
-
-    def __init__(self, *arguments, **options):
-        self.playground = fm.DomainPlayground(*arguments, **options)
-        self.messages = []
-        self.playground.send = lambda content, buffers=None: self.messages.append((json.loads(json.dumps(content)), buffers))
+class Heard(listening.Heard):
+    kind = fm.DomainPlayground
 
     def say(self, type, **rest):
-        self.playground._answer(self.playground, {"type": type, "serial": "me 1", **rest}, [])
-        return self.messages[-1]
+        return super().say(type, **{"serial": "me 1", **rest})
 
     def draw(self, points, segments, start="", **rest):
         return self.say("ask", drawn={"start": start, "points": points, "segments": segments}, **rest)
@@ -214,7 +203,7 @@ def test_an_outline_without_an_inside_is_a_mesh_without_triangles():
     assert content["state"] == "no triangles: all 3 points lie on one line"
     assert repr(heard.playground) == "DomainPlayground: 3 corners, 0 triangles"
     assert [len(buffer) for buffer in buffers] == [48, 0, 0, 0, 0]
-    assert "<img" not in heard.playground.still("me")
+    assert "<img" in heard.playground.still("me")  # its corners
 
 
 def test_points_without_a_segment_are_a_domain_whose_points_may_move():
@@ -407,6 +396,7 @@ def test_while_compiling_goes_on_meshes_are_small_and_then_whole(monkeypatch):
     assert content["provisional"]
     assert content["state"].endswith("; more of them as soon as that is compiled")
     assert_made_again(heard.playground)
+    assert heard.say("steps")[0]["cut"] == f"a run that may add {module.FEW_POINTS} points; more when that is compiled"
     monkeypatch.setattr(ahead, "is_ready", lambda: True)
     content, _ = heard.say("ask", size=0.05)
     assert heard.playground.mesh.refinement.complete
@@ -480,3 +470,41 @@ def test_an_error_keeps_its_place_in_a_pickle():
     again = pickle.loads(pickle.dumps(caught.value))
     assert (str(again), again.where) == (str(caught.value), (1.0, 1.0))
     assert fm.MeshError("no").where is None
+
+
+# ---- what goes wrong -----------------------------------------------------------------------------------
+
+
+def test_an_interrupt_is_answered_and_leaves_no_old_mesh_behind(monkeypatch):
+    heard = Heard(fm.l_shape())
+
+    def interrupted(*arguments, **options):
+        raise KeyboardInterrupt
+
+    with monkeypatch.context() as patched:
+        patched.setattr("fem_mesh.watch.domain_playground.widget.refine", interrupted)
+        with pytest.raises(KeyboardInterrupt):
+            heard.say("ask", size=0.25)
+    assert "KeyboardInterrupt" in heard.messages[-1][0]["refusal"]
+    message, _ = heard.say("ask", size=0.25)
+    assert (message["refusal"], message["triangles"] > 100) == ("", True)
+
+
+def test_steps_that_cannot_be_had_are_answered(monkeypatch):
+    heard = Heard()
+    assert heard.say("steps")[0]["refusal"] == "there is no domain to play the steps of"
+
+    def broken(*arguments, **options):
+        raise RuntimeError("no steps")
+
+    heard = Heard(fm.l_shape())
+    monkeypatch.setattr("fem_mesh.watch.domain_playground.widget.record", broken)
+    with pytest.raises(RuntimeError):
+        heard.say("steps")
+    assert heard.messages[-1][0]["refusal"] == "RuntimeError: no steps"
+
+
+@pytest.mark.parametrize("spots", [[1], [(1, 2)], [("a", 1, 1)], 5])
+def test_spots_that_are_no_triples_are_refused(spots):
+    with pytest.raises(traitlets.TraitError):
+        fm.DomainPlayground(spots=spots)

@@ -22,6 +22,7 @@ FLOORS = [
     "algorithms",
     "lifetimes",
     "trace",
+    "recording",
     "watch",
     "course",
 ]  # from the ground up

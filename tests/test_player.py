@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 import fem_mesh as fm
+from fem_mesh.watch import player as player_module
 from fem_mesh.watch.page import MOST_EMBEDDED, html_of_trace
 from fem_mesh.watch.wire import UNIT, as_data
 
@@ -239,3 +240,45 @@ def test_a_recording_goes_on_where_it_stopped():
     assert len(limited) == 10
     assert not limited.complete
     assert fm.record(iter(whole), limit=len(whole)).complete
+
+
+# ---- what goes wrong -----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("source", [5, None, fm.bowyer_watson])
+def test_only_steps_are_played(source):
+    with pytest.raises(fm.MeshError, match="a generator of steps is wanted"):
+        fm.play(source)
+
+
+@pytest.mark.parametrize("view", [(0, 0, 0, 0), (1, 0, 0, 1), (0, float("nan"), 0, 1), (0, 1), "abcd", 5])
+def test_a_view_is_a_box(view):
+    with pytest.raises(fm.MeshError, match="view is left, right, bottom, top"):
+        fm.play(fm.bowyer_watson([(0, 0), (4, 0), (0, 3)]), view=view)
+
+
+def test_a_trace_has_a_view_of_its_own():
+    with pytest.raises(fm.MeshError, match=r"trace\.view"):
+        fm.play(flips(), view=(0, 1, 0, 1))
+
+
+def test_a_generator_that_fails_is_not_one_that_ended():
+    def failing():
+        for k in range(player_module.AT_ONCE + 7):
+            yield fm.Step("look", f"{k}", points=[(0, 0), (1, 0), (k, 1)], triangles=[])
+        raise ZeroDivisionError("at last")
+
+    player, heard = fm.play(failing()), []
+    player.send = lambda content, buffers=None: heard.append(content)
+    assert len(player.trace) == player_module.AT_ONCE
+    for _ in range(2):
+        with pytest.raises(ZeroDivisionError):
+            player._answer(player, {"type": "more"}, [])
+        assert heard[-1] == {"type": "failed", "said": "the generator failed: ZeroDivisionError: at last"}
+    assert len(player.data["steps"]) == player_module.AT_ONCE + 7
+    assert not player.trace.complete
+
+
+def test_no_steps_are_not_further_steps():
+    with pytest.raises(fm.MeshError, match="at least one"):
+        fm.play(flips()).load(0)

@@ -1,27 +1,19 @@
 """The playground in Python: what the pointer does, and what it tells the browser, without one."""
 
 import itertools
-import json
 
+import listening
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 import fem_mesh as fm
+from fem_mesh.watch import playground as playground_module
 
 
-class Heard:
-    """A playground whose browser is a list."""
-
-    def __init__(self, *arguments, **options):
-        self.playground = fm.Playground(*arguments, **options)
-        self.messages = []
-        self.playground.send = lambda content, buffers=None: self.messages.append((json.loads(json.dumps(content)), buffers))
-
-    def say(self, type, **rest):
-        self.playground._answer(self.playground, {"type": type, **rest}, [])
-        return self.messages[-1] if self.messages else None
+class Heard(listening.Heard):
+    kind = fm.Playground
 
 
 def turned(triangles):
@@ -222,14 +214,77 @@ def test_a_playground_of_many_points_begins_at_once_and_goes_on():
 def test_what_stands_in_for_a_playground_says_what_it_is():
     for points in (None, [(0, 0)], fm.random_points(30, seed=1)):
         playground = fm.Playground(points)
-        still = playground.still("KEY")
+        still = playground.still("key")
         assert repr(playground) in still
         assert ("<img" in still) == (points is not None)
         assert len(still) < 60_000
-        assert still == fm.Playground(points).still("KEY")
+        assert still == fm.Playground(points).still("key")
+
+
+def test_what_stands_in_for_a_playground_shows_what_it_shows():
+    points = fm.random_points(12, seed=1)
+    plain = fm.Playground(points).still("key")
+    for shown, word in (("circles", "circumcircle"), ("voronoi", "Voronoi edge")):
+        assert word not in plain
+        assert word in fm.Playground(points, **{shown: True}).still("key")
 
 
 def test_equal_points_to_begin_with_are_merged():
     playground = fm.Playground([(0, 0), (1, 0), (0, 1), (1, 0)])
     assert len(playground.points) == 3
     assert list(itertools.chain(playground.mesh.unused)) == []
+
+
+# ---- drags -------------------------------------------------------------------------------------------
+
+
+def test_a_drag_tells_what_all_of_it_changed():
+    heard = Heard([(0, 0), (4, 0), (0, 4), (4, 4), (1, 1), (3, 2)])
+    for x in (1.2, 2.0, 3.4):
+        heard.say("move", i=4, x=x, y=1)
+    heard.say("move", i=4, x=3.4, y=1, last=True)  # which changes no triangle any more
+    step = heard.playground.trace[-1]
+    assert (step.kind, len(step.added) > 0) == ("move", True)
+    assert step.caption == f"point 4 moves: {len(step.added)} triangles come, {len(step.removed)} go"
+
+
+def test_a_drag_whose_end_is_not_heard_is_not_lost():
+    heard = Heard([(0, 0), (4, 0), (0, 4), (4, 4), (1, 1), (3, 2)])
+    heard.say("move", i=4, x=2, y=1)
+    heard.say("move", i=5, x=3, y=3)
+    heard.say("move", i=5, x=3, y=3.5, last=True)
+    check(heard.playground)
+    heard.say("undo")
+    assert heard.playground.points[4:].tolist() == [[2, 1], [3, 2]]
+    heard.say("undo")
+    assert heard.playground.points[4:].tolist() == [[1, 1], [3, 2]]
+
+
+def test_a_drag_that_comes_back_is_nothing_to_undo():
+    heard = Heard([(0, 0), (4, 0), (0, 4), (1, 1)])
+    heard.playground.add(3, 3)
+    heard.say("undo")
+    steps = len(heard.playground.trace)
+    for x in (2, 1):
+        message, _ = heard.say("move", i=3, x=x, y=1, last=x == 1)
+    assert message["redo"]
+    assert len(heard.playground.trace) == steps
+
+
+def test_what_can_be_undone_takes_a_bounded_room(monkeypatch):
+    heard = Heard(fm.random_points(400, seed=1))
+    for k in range(playground_module.MOST_UNDONE + 5):
+        heard.say("move", i=k, x=0.5 + k / 1000, y=0.5, last=True)
+    assert len(heard.playground._done) == playground_module.MOST_UNDONE
+    monkeypatch.setattr(playground_module, "MOST_KEPT", 100_000)
+    heard.playground.add(0.1, 0.1)
+    assert 0 < sum(map(playground_module._weight, heard.playground._done)) <= 100_000
+
+
+@pytest.mark.parametrize("points", [[(0, 0), (2, 0)], [(0, 0), (2, 0), (2, 2), (0, 2)], fm.random_points(20, seed=1)])
+def test_the_voronoi_diagram_that_is_drawn_is_that_of_the_mesh(points):
+    heard = Heard(points, voronoi=True)
+    message, buffers = heard.say("all")
+    lines = np.frombuffer(buffers[-1], "<f8").reshape(-1, 2, 2)
+    assert message["voronoi"]
+    assert len(lines) == len(heard.playground.mesh.voronoi().edges) > 0

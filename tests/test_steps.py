@@ -144,6 +144,8 @@ def test_a_lecturers_points_may_vanish_and_move():
     assert np.isnan(trace.frame(1)[0][3]).all()
     np.testing.assert_array_equal(trace.frame(1)[0][1], (1, 0.5))
     np.testing.assert_array_equal(trace.frame(0)[0][1], (1, 0))
+    assert trace[1].gone_points == (3,)
+    assert trace[1].new_points == ((1, 1.0, 0.5),)
 
 
 def test_moving_points_are_measured_where_they_are():
@@ -231,3 +233,19 @@ def test_two_hundred_thousand_steps_fit_in_500_megabytes():
     tracemalloc.stop()
     assert len(trace) > 200_000
     assert used < 500e6
+
+
+@pytest.mark.parametrize(
+    ("shown", "says"),
+    [
+        ({"edges": [(0, 7)]}, r"edges hold \(0, 7\), which are no 2 numbers of points: there are 3"),
+        ({"circles": [(0, 1)]}, r"circles hold \(0, 1\), which are no 3 numbers"),
+        ({"doomed": [(0, 1, -1)]}, "doomed hold"),
+        ({"points": [(0, 0), (1, float("inf")), (0, 1)]}, r"point 1 = \(1\.0, inf\) is no pair of finite numbers"),
+        ({"points": [(0, 0), (1, 2, 3), (0, 1)]}, r"point 1 = \(1\.0, 2\.0, 3\.0\)"),
+    ],
+)
+def test_a_lecturers_slip_is_named_where_it_is_yielded(shown, says):
+    step = fm.Step("look", **{"points": [(0, 0), (1, 0), (0, 1)], "triangles": [(0, 1, 2)], **shown})
+    with pytest.raises(fm.MeshError, match=rf"step 0 \(look\): {says}"):
+        fm.record([step])

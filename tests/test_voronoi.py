@@ -124,6 +124,25 @@ def test_it_is_the_diagram_that_scipy_makes(seed):
         assert {-1 if v < 0 else int(to[v]) for v in cell.tolist()} == set(region)
 
 
+@pytest.mark.parametrize("name", NAMES)
+def test_every_end_of_an_edge_is_as_far_from_its_two_sites_as_from_no_other(name):
+    points = CORPUS[name](40)
+    diagram = fm.delaunay(points).voronoi()
+    reach = 2.0 * float(np.ptp(points, axis=0).max(initial=0.0))
+    near = 1e-6 * reach + 4 * np.spacing(np.abs(points).max(initial=0.0))
+    for (a, b), ends in zip(diagram.sites.tolist(), diagram.ends(reach).tolist(), strict=True):
+        for end in ends:
+            away = np.hypot(*(diagram.mesh.points - end).T)
+            assert away[[a, b]] == pytest.approx(away.min(), rel=1e-6, abs=near)
+
+
+def test_edges_without_an_end_are_drawn_as_far_as_asked():
+    line = fm.delaunay([(0, 0), (2, 0)]).voronoi()
+    assert line.ends(5.0).tolist() == [[[1, 5], [1, -5]]]
+    corner = fm.delaunay([(0, 0), (2, 0), (0, 2)]).voronoi()
+    assert sorted(end for _, end in corner.ends(3.0).tolist())[:2] == [[-2.0, 1.0], [1.0, -2.0]]
+
+
 def test_the_diagram_of_a_grid_is_a_grid():
     diagram = fm.delaunay(fm.grid_points(5, 4)).voronoi()
     assert sorted(diagram.vertices.tolist()) == sorted([x + 0.5, y + 0.5] for x in range(4) for y in range(3))

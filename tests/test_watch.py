@@ -140,3 +140,20 @@ def test_one_line_of_ipywidgets_steps_through_a_trace(trace):
 
     slider = interactive(trace.draw, k=(0, len(trace) - 1)).children[0]
     assert slider.max == len(trace) - 1
+
+
+@pytest.mark.parametrize(
+    ("name", "options", "says"),
+    [
+        ("a.gif", {"fps": 0}, "fps is how many steps are shown in a second"),
+        ("a.gif", {"steps": [999]}, "there is no step 999 to save: the trace has"),
+        ("a.png", {"fps": 2}, "fps is for films"),
+        ("a.html", {"fps": 2}, "fps is for films"),
+        ("a.png", {"steps": []}, "steps is empty"),
+    ],
+)
+def test_a_trace_is_not_saved_as_nobody_could_have_meant(name, options, says, tmp_path):
+    trace = fm.record(fm.bowyer_watson([(0, 0), (4, 0), (0, 3), (3, 2)]))
+    with pytest.raises(fm.MeshError, match=says):
+        trace.save(tmp_path / name, **options)
+    assert not (tmp_path / name).exists()

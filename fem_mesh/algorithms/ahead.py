@@ -17,7 +17,7 @@ from fem_mesh.algorithms.delaunay import delaunay
 from fem_mesh.algorithms.refine import refine
 from fem_mesh.algorithms.ruppert import refine_mesh
 from fem_mesh.domain.domain import Domain
-from fem_mesh.kernel import compiling, is_compiled, is_kept
+from fem_mesh.kernel import can_compile, compiling, is_compiled, is_kept
 
 LONGEST = 300.0  # seconds that the other process may take
 PATIENCE = 2.0  # seconds that the end of this process waits for the thread
@@ -32,7 +32,7 @@ _ending = False
 def compile_ahead() -> None:
     """Begin to compile what ``delaunay`` and ``refine`` need, in the background; at once if that was begun before.
 
-    Prints nothing and raises nothing: where it fails, large meshes are compiled for when they come.
+    Says nothing of it: where no other process can be had, large meshes are compiled for when they come.
     """
     global _thread
     with _lock:
@@ -61,13 +61,17 @@ def compile_now(niceness: int = 0) -> None:
 
 
 def _compile() -> None:
-    try:
-        if not is_compiled(refine_mesh) and not is_kept(refine_mesh):
-            _compile_elsewhere()
-        if not _ending:
-            compile_now()
-    except Exception:  # a thread has nobody to tell
+    if not can_compile():
         return
+    if not is_compiled(refine_mesh) and not is_kept(refine_mesh):
+        try:
+            _compile_elsewhere()
+        except (OSError, subprocess.SubprocessError):  # no process to be had, or too slow a machine
+            return
+        if not is_kept(refine_mesh):  # nothing came of it: it is compiled when it is needed
+            return
+    if not _ending:
+        compile_now()
 
 
 def _compile_elsewhere() -> None:

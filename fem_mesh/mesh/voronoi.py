@@ -85,6 +85,23 @@ class Voronoi:
         """The cell of each point (see ``cell``)."""
         return [self.cell(i) for i in range(len(self.mesh.points))]
 
+    def ends(self, reach: float) -> np.ndarray:
+        """The two ends of each edge, to draw it: float64 (e, 2, 2). One that is infinitely far away is put at ``reach``.
+
+        >>> import fem_mesh as fm
+        >>> fm.delaunay([(0, 0), (2, 0)]).voronoi().ends(5).tolist()
+        [[[1.0, 5.0], [1.0, -5.0]]]
+        """
+        ends = np.empty((len(self.edges), 2, 2))
+        middles = self.mesh.points[self.sites].mean(axis=1)
+        for i, far in ((0, -reach), (1, reach)):
+            open_, other = self.edges[:, i] < 0, self.edges[:, 1 - i]
+            ends[~open_, i] = self.vertices[self.edges[~open_, i]]
+            begin = middles.copy()
+            begin[other >= 0] = self.vertices[other[other >= 0]]
+            ends[open_, i] = begin[open_] + far * self.directions[open_]
+        return ends
+
     @cached_property
     def _representatives(self) -> np.ndarray:
         """For each point the equal one that is in a triangle; itself where none is."""

@@ -78,22 +78,24 @@ def plot_mesh(
     *,
     circles: bool = False,
     numbers: bool | None = None,
+    voronoi: bool = False,
     legend: bool = True,
     dark: bool = False,
     title: str | None = None,
 ) -> Picture | Axes:
-    """Draw a mesh. ``circles`` adds every circumcircle, ``numbers`` the vertices' numbers; see ``draw_step``.
+    """Draw a mesh. ``circles`` adds every circumcircle, ``voronoi`` the Voronoi diagram of a mesh that is Delaunay,
+    ``numbers`` the vertices' numbers; see ``draw_step``.
 
     ``title`` replaces the line of facts above the picture.
     """
     page = new_axes(dark) if ax is None else ax
     page.clear()
     _set_view(page, view_box(mesh.points), dark)
-    layers = layers_of_mesh(mesh, circles, numbers)
+    layers = layers_of_mesh(mesh, circles, numbers, voronoi)
     draw_layers(page, layers, dark)
-    if circles and legend:
+    if (circles or voronoi) and legend:
         shown = {layer.role for layer in layers}
-        _legend(page, [name for name in ("mesh", "circle", "vertex", "segment") if name in shown], dark)
+        _legend(page, [name for name in ("mesh", "circle", "voronoi", "vertex", "segment") if name in shown], dark)
     facts = repr(mesh) if title is None else title
     head, _, rest = facts.partition(": ") if title is None else (facts, "", "")
     _caption(page, head, rest, dark)

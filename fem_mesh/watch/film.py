@@ -15,7 +15,7 @@ from tqdm import tqdm
 from fem_mesh.errors import MeshError
 from fem_mesh.watch.draw import draw_step, new_axes
 from fem_mesh.watch.page import save_page
-from fem_mesh.watch.picture import DPI, Picture, picture_of
+from fem_mesh.watch.picture import DPI, Picture
 from fem_mesh.watch.style import PAPER
 
 if TYPE_CHECKING:
@@ -25,30 +25,42 @@ SHEET = 12  # frames on a contact sheet
 HOLD = 2.0  # seconds that a film rests on its last frame
 
 
-def save_trace(trace: Trace, path: Any, *, fps: float = 2.0, steps: Iterable[int] | None = None, **options: Any) -> None:
+def save_trace(
+    trace: Trace, path: Any, *, fps: float | None = None, steps: Iterable[int] | None = None, **options: Any
+) -> None:
     """Write a trace to ``path``; the ending decides what it becomes.
 
     .html : a page that plays, anywhere and without a network; as it stands, the first frame and all steps in words
-    .gif, .mp4 : a film, ``fps`` steps a second; .mp4 needs the program ffmpeg
+    .gif, .mp4 : a film, ``fps`` steps a second (2 by default); .mp4 needs the program ffmpeg
     .png : a contact sheet of some 12 steps, or of the ``steps`` given
 
-    ``options`` are those of ``draw_step``. Raises MeshError for an empty trace, another ending, or
-    where ffmpeg is missing.
+    ``options`` are those of ``draw_step``. Raises MeshError for an empty trace, steps that are not there, another
+    ending, an option that a file of this ending cannot keep, or where ffmpeg is missing.
     """
     path = Path(path)
-    if not len(trace):
-        raise MeshError("there is no step to save: the trace is empty")
-    chosen = None if steps is None else list(steps)
-    if chosen == []:
-        raise MeshError("there is no step to save: steps is empty")
-    if path.suffix.lower() == ".png":
-        contact_sheet(trace, chosen, **options).save(path)
-    elif path.suffix.lower() == ".html":
-        save_page(trace, path, chosen, **options)
-    elif path.suffix.lower() in (".gif", ".mp4"):
-        _save_film(trace, path, fps, chosen or range(len(trace)), options)
-    else:
+    ending = path.suffix.lower()
+    if ending not in (".html", ".gif", ".mp4", ".png"):
         raise MeshError(f"a trace is saved as .html, .gif, .mp4 or .png, not as {path.suffix or path.name!r}")
+    chosen = _choose(trace, steps, "save")
+    if ending in (".png", ".html") and fps is not None:
+        raise MeshError(f"fps is for films: leave it out of {ending}, or save a .gif")
+    if ending == ".png":
+        contact_sheet(trace, None if steps is None else chosen, **options).save(path)
+    elif ending == ".html":
+        save_page(trace, path, None if steps is None else chosen, **options)
+    else:
+        _save_film(trace, path, 2.0 if fps is None else fps, chosen, options)
+
+
+def _choose(trace: Trace, steps: Iterable[int] | None, verb: str) -> list[int]:
+    """The numbers of the steps asked for, all of them by default."""
+    chosen = list(range(len(trace)) if steps is None else steps)
+    if not chosen:
+        raise MeshError(f"there is no step to {verb}: " + ("the trace is empty" if steps is None else "steps is empty"))
+    for k in chosen:
+        if not -len(trace) <= k < len(trace):
+            raise MeshError(f"there is no step {k} to {verb}: the trace has {len(trace)}")
+    return chosen
 
 
 class Animation(FuncAnimation):
@@ -60,9 +72,9 @@ class Animation(FuncAnimation):
 
 def animate(trace: Trace, fps: float = 2.0, *, steps: Iterable[int] | None = None, **options: Any) -> Animation:
     """The steps of a trace, all or those given, as a Matplotlib animation; ``options`` are those of ``draw_step``."""
-    frames = list(range(len(trace)) if steps is None else steps)
-    if not frames:
-        raise MeshError("there is no step to animate: " + ("the trace is empty" if steps is None else "steps is empty"))
+    frames = _choose(trace, steps, "animate")
+    if not 0 < fps < np.inf:
+        raise MeshError(f"fps is how many steps are shown in a second: a number > 0, not {fps!r}")
     page = new_axes(bool(options.get("dark", False)))
     assert isinstance(page.figure, Figure)
 
@@ -90,14 +102,6 @@ def contact_sheet(trace: Trace, steps: Iterable[int] | None = None, **options: A
     return Picture(figure, f"{len(chosen)} of {len(trace)} steps: " + ", ".join(f"{k} {trace[k].kind}" for k in chosen))
 
 
-def picture_of_trace(trace: Trace) -> Picture:
-    """What a notebook shows for a trace: its last frame, under its line of facts."""
-    page = new_axes()
-    draw_step(trace, len(trace) - 1, page)
-    page.set_title(repr(trace), loc="left", fontsize=10, wrap=True)
-    return picture_of(page, repr(trace))
-
-
 def choose_steps(n: int) -> list[int]:
     """Up to a sheet's worth of step numbers, evenly from the first to the last."""
     return sorted({int(k) for k in np.linspace(0, n - 1, min(n, SHEET)).round()})
@@ -107,7 +111,7 @@ def _save_film(trace: Trace, path: Path, fps: float, steps: Iterable[int], optio
     if path.suffix.lower() == ".mp4" and shutil.which("ffmpeg") is None:
         raise MeshError("an .mp4 needs the program ffmpeg, which is not installed: save a .gif instead")
     frames = list(steps)
-    frames += frames[-1:] * int(HOLD * fps)
+    frames += frames[-1:] * int(HOLD * min(fps, 100))
     film = animate(trace, fps, steps=frames, **options)
     writer = PillowWriter(fps=fps) if path.suffix.lower() == ".gif" else FFMpegWriter(fps=fps)  # type: ignore[arg-type]
     with tqdm(total=len(frames), desc=path.name, delay=2, leave=False) as bar:

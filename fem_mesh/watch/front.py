@@ -14,11 +14,12 @@ from fem_mesh.watch.style import as_table
 HERE = Path(__file__).parent
 VIEW = ("geometry.js", "camera.js", "view.js", "panel.js")
 PLAYER = (*VIEW, "trace.js", "timeline.js", "player.js")
-PLAYGROUND = (*VIEW, "mesh.js", "playground.js")
-DRAWN = ("drawing.js", "pencil.js", "overlay.js", "controls.js", "histogram.js", "stage.js", "domain_playground.js")
-DOMAIN_PLAYGROUND = (*PLAYER, *DRAWN)
+PLAYER_WIDGET = (*PLAYER, "kernel.js", "player_widget.js")
+PLAYGROUND = (*VIEW, "kernel.js", "mesh.js", "playground.js")
+ROOM = ("drawing", "pencil", "overlay", "controls", "histogram", "stage", "board")
+DOMAIN_PLAYGROUND = (*PLAYER, "kernel.js", *(f"domain_playground/{name}.js" for name in ROOM))
 
-_NEIGHBOURS = re.compile(r'^import .* from "\./.*";$', re.MULTILINE)  # what a module takes from the others
+_NEIGHBOURS = re.compile(r'^import .* from "\.{1,2}/.*";$', re.MULTILINE)  # what a module takes from the others
 
 
 def _read(name: str) -> str:

@@ -10,22 +10,18 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from fem_mesh.mesh.quality import circumcircle
-from fem_mesh.watch.style import ROLES
+from fem_mesh.watch.style import FULL_SIZE, MOST_MARKED, MOST_NUMBERS, ROLES, THINNEST, VIEWS
 
 if TYPE_CHECKING:
     from fem_mesh.mesh.mesh import Mesh
     from fem_mesh.trace import Trace
 
-VIEWS = 20  # circles larger than so many views are drawn as an arc
-MOST_NUMBERS = 60  # more points than this go without numbers, unless asked
-THINNEST = 1.6  # of the thick lines, in points
-FULL_SIZE = 120  # up to so many vertices have markers of full size
-MOST_MARKED = 1_000  # more vertices than this go without a marker
-
+FAR = 3.0  # how far Voronoi edges without an end are drawn, as a part of the points' extent
 HOLLOW = ("waiting", "point")  # markers that are rings
 CORE = 3.5  # the dot inside the ring of a point, in points
 LEGEND = (  # the order of a step's legend
-    "visited", "doomed", "new", "gone", "segment", "asked", "circle", "diametral", "encroached", "edge", "waiting", "point",
+    "visited", "doomed", "new", "gone", "segment", "asked", "circle", "diametral", "encroached", "edge", "voronoi",
+    "waiting", "point",
 )  # fmt: skip
 
 
@@ -111,8 +107,8 @@ Layer: 3 markers, vertex, Layer: 1 markers, point]
     return [layer for layer in shown if len(layer.places)]
 
 
-def layers_of_mesh(mesh: Mesh, circles: bool = False, numbers: bool | None = None) -> list[Layer]:
-    """What the picture of a mesh shows, as ``layers_of`` says it.
+def layers_of_mesh(mesh: Mesh, circles: bool = False, numbers: bool | None = None, voronoi: bool = False) -> list[Layer]:
+    """What the picture of a mesh shows, as ``layers_of`` says it; with ``voronoi`` the edges of its Voronoi diagram.
 
     >>> import fem_mesh as fm
     >>> layers_of_mesh(fm.delaunay([(0, 0), (4, 0), (0, 3), (3, 2)]), numbers=False)
@@ -125,6 +121,8 @@ def layers_of_mesh(mesh: Mesh, circles: bool = False, numbers: bool | None = Non
         Layer("segment", "lines", _at(mesh.points, mesh.segments, 2), scale=scale),
         Layer("circle", "circles", _circumcircles(corners if circles else corners[:0])),
     ]
+    if voronoi and len(mesh.points) > 1:
+        shown.append(Layer("voronoi", "lines", mesh.voronoi().ends(FAR * float(np.ptp(mesh.points, axis=0).max()))))
     if len(mesh.points) <= MOST_MARKED:
         shown.append(Layer("vertex", "markers", mesh.points, scale=scale))
     if numbers or (numbers is None and len(mesh.points) <= MOST_NUMBERS):

@@ -29,9 +29,9 @@ class Live(AnyWidget):
         raise NotImplementedError
 
     def _ipython_display_(self) -> None:
-        still = self.still("KEY")
-        self.key = f"{type(self).__name__}-{zlib.crc32(still.encode()):08x}"  # the same in every run
-        display({"text/plain": repr(self), "text/html": still.replace('"KEY"', f'"{self.key}"')}, raw=True)
+        if not self.key:
+            self.key = f"{type(self).__name__}-{zlib.crc32(self.still('').encode()):08x}"  # the same in every run
+        display({"text/plain": repr(self), "text/html": self.still(self.key)}, raw=True)
         data = self._repr_mimebundle_()
         bundle: Any = data[0] if isinstance(data, tuple) else data
         if bundle and VIEW in bundle:

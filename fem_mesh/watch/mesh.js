@@ -1,10 +1,10 @@
 // A triangulation as the playground holds it, changed by differences.
 
-import { circumcircle, smallestAngle } from "./geometry.js";
+import { smallestAngle } from "./geometry.js";
 
 export class Mesh {
   constructor(points = [], triangles = []) {
-    [this.x, this.y] = [[], []];
+    [this.x, this.y, this.voronoi] = [[], [], []]; // the Voronoi diagram's lines come from the kernel
     for (let i = 0; i < points.length; i += 2) {
       this.x.push(points[i]);
       this.y.push(points[i + 1]);
@@ -46,22 +46,9 @@ export class Mesh {
     return [best, least];
   }
 
-  // The Voronoi diagram as lines: circumcentres of neighbours joined; beyond the hull as far as `reach`.
-  voronoi(reach) {
-    const centers = new Map(), lines = [], { x, y } = this;
-    for (const [a, b, c] of this.rows.values())
-      for (const [p, q] of [[a, b], [b, c], [c, a]]) {
-        const [cx, cy] = circumcircle(x, y, a, b, c), other = centers.get(`${q} ${p}`);
-        if (other) {
-          lines.push(cx, cy, ...other);
-          centers.delete(`${q} ${p}`);
-        } else centers.set(`${p} ${q}`, [cx, cy]);
-      }
-    for (const [edge, [cx, cy]] of centers) { // hull edges, with the mesh on their left
-      const [p, q] = edge.split(" "), length = Math.hypot(x[q] - x[p], y[q] - y[p]);
-      lines.push(cx, cy, cx + (reach * (y[q] - y[p])) / length, cy - (reach * (x[q] - x[p])) / length);
-    }
-    return lines;
+  copy() {
+    const copy = new Mesh();
+    return Object.assign(copy, { x: [...this.x], y: [...this.y], rows: new Map(this.rows), voronoi: this.voronoi, dirty: true });
   }
 }
 

@@ -10,9 +10,9 @@ from matplotlib.colors import to_rgb
 
 from fem_mesh.mesh.points import view_box
 from fem_mesh.watch.draw import _caption, _legend, _set_view, draw_layers, new_axes
-from fem_mesh.watch.layers import MOST_NUMBERS, Layer, numbers_of
+from fem_mesh.watch.layers import Layer, numbers_of
 from fem_mesh.watch.picture import Picture, picture_of
-from fem_mesh.watch.style import INK, PAPER, ROLES, color_of
+from fem_mesh.watch.style import INK, MOST_NUMBERS, PAPER, ROLES, color_of
 
 if TYPE_CHECKING:
     from fem_mesh.domain.domain import Domain

@@ -70,7 +70,7 @@ export function listenToKeys(root, table, help) {
     const name = (!typed && (event.ctrlKey || event.metaKey) ? "ctrl-" : "") + event.key;
     const inField = event.target.matches("input, select, textarea");
     if ((event.altKey && !typed) || (inField && !name.startsWith("ctrl-") && FIELD_KEYS.has(event.key))) return;
-    if (event.target.matches("button, summary") && (event.key === " " || event.key === "Enter")) return; // pressing it
+    if (event.target.matches("button, summary, select") && (event.key === " " || event.key === "Enter")) return; // pressing it
     const action = event.key === "Escape" && !help.hidden ? () => (help.hidden = true) : actions.get(name);
     if (!action) return;
     event.preventDefault();
@@ -143,8 +143,22 @@ export function watchTheme(callback) {
   };
 }
 
-// Zoom with the wheel (with ctrl, but in full screen), pan by dragging with the button that `pans` accepts.
-export function letZoom(view, redraw, root, pans = () => true) {
+// Follow a pointer that was pressed on a canvas, until it is let go or taken away.
+export function track(canvas, event, move, release, cancel = release) {
+  const stop = new AbortController(), follow = (name, act) =>
+    canvas.addEventListener(name, (now) => now.pointerId === event.pointerId && act(now), { signal: stop.signal });
+  const end = (act) => (now) => {
+    stop.abort();
+    act(now);
+  };
+  canvas.setPointerCapture(event.pointerId);
+  follow("pointermove", move);
+  follow("pointerup", end(release));
+  follow("pointercancel", end(cancel));
+}
+
+// Zoom with the wheel (with ctrl, but in full screen); with `pans`, dragging moves the view.
+export function letZoom(view, redraw, root, { pans = true } = {}) {
   const { canvas } = view;
   canvas.addEventListener("wheel", (event) => {
     if (!(event.ctrlKey || event.metaKey || document.fullscreenElement === root)) return;
@@ -152,24 +166,22 @@ export function letZoom(view, redraw, root, pans = () => true) {
     view.zoomBy(Math.exp(-0.002 * event.deltaY * (event.deltaMode ? 20 : 1)), view.at(event));
     redraw();
   }, { passive: false });
-  canvas.addEventListener("pointerdown", (event) => {
-    if (!pans(event)) return;
-    canvas.setPointerCapture(event.pointerId);
-    let [x, y] = [event.clientX, event.clientY];
-    const move = (moved) => {
-      view.panBy(moved.clientX - x, moved.clientY - y);
-      [x, y] = [moved.clientX, moved.clientY];
+  if (pans) canvas.addEventListener("pointerdown", (event) => {
+    if (event.button) return;
+    let last = view.at(event);
+    track(canvas, event, (moved) => {
+      const at = view.at(moved);
+      view.panBy(at[0] - last[0], at[1] - last[1]);
+      last = at;
       redraw();
-    };
-    canvas.addEventListener("pointermove", move);
-    canvas.addEventListener("pointerup", () => canvas.removeEventListener("pointermove", move), { once: true });
+    }, () => null);
   });
 }
 
-// Redraw when the canvas changes its size. Returns how to stop.
-export function watchSize(canvas, redraw) {
-  const observer = new ResizeObserver(redraw);
-  observer.observe(canvas);
+// Call back when an element changes its size. Returns how to stop.
+export function watchSize(node, callback) {
+  const observer = new ResizeObserver(callback);
+  observer.observe(node);
   return () => observer.disconnect();
 }
 
@@ -178,15 +190,7 @@ export function toggleFullScreen(root) {
   else root.requestFullscreen?.();
 }
 
-// Call back on an event of a widget's model. Returns how to stop.
-export function listen(model, event, callback) {
-  model.on(event, callback);
-  return () => model.off(event, callback);
-}
-
-// While a widget lives, the still picture that stands in for it is not shown. Returns how to stop.
-export function hideStandIn(key) {
-  const rule = make("style", {}, `[data-stands-in="${key}"] { display: none !important; }`);
-  document.head.append(rule);
-  return () => rule.remove();
+export function toggleHelp(help, button) {
+  help.hidden = !help.hidden;
+  button.setAttribute("aria-expanded", String(!help.hidden));
 }

@@ -3,7 +3,7 @@
 import { View } from "./view.js";
 import { Trace } from "./trace.js";
 import { Timeline } from "./timeline.js";
-import { make, button, setFace, listenToKeys, showLegend, watchTheme, watchSize, letZoom, toggleFullScreen, listen, hideStandIn, disable } from "./panel.js";
+import { make, button, setFace, listenToKeys, toggleHelp, showLegend, watchTheme, watchSize, letZoom, toggleFullScreen, disable } from "./panel.js";
 
 const A_SECOND = 2; // steps, at speed 1
 const SPEEDS = [0.25, 0.5, 1, 2, 4, 8];
@@ -29,6 +29,7 @@ export class Player {
     this.timeline.setTrace(this.trace);
     this.scrubber.max = this.trace.length - 1;
     const [left, right, bottom, top] = data.box;
+    if (String(data.box) !== String(this.view.box)) this.view.setBox(data.box);
     this.canvas.style.aspectRatio = String(Math.min(2.2, Math.max(1.3, (right - left) / (top - bottom))));
     this.root.setAttribute("aria-label", `player of ${this.trace.length} steps`);
     disable(this.more, !(data.more && this.host.more), this.root);
@@ -84,8 +85,8 @@ export class Player {
     this.setPlaying(true);
     if (follows) return;
     const tick = () => {
-      if (!this.playing || !this.root.isConnected) return;
-      this.go(this.k + 1);
+      if (!this.playing) return;
+      if (this.root.isConnected) this.go(this.k + 1); // a page may take a cell out that is not in sight
       if (this.k === this.trace.length - 1) this.pause();
       else this.timer = setTimeout(tick, 1000 / (A_SECOND * this.speed));
     };
@@ -152,11 +153,11 @@ export class Player {
   }
 
   get showsNumbers() {
-    return this.numbers ?? this.trace?.size <= 60;
+    return this.numbers ?? this.trace?.size <= this.style.limits.numbers;
   }
 
   toggleHelp() {
-    this.help.hidden = !this.help.hidden;
+    toggleHelp(this.help, this.helpButton);
   }
 
   zoomBy(factor) {
@@ -192,6 +193,7 @@ export class Player {
     this.circlesButton = button("circles", "circles", () => this.setCircles(!this.circles), { key: "c", pressed: true });
     this.numbersButton = button("numbers", "1 2", () => this.setNumbers(!this.showsNumbers), { key: "n", pressed: true });
     this.more = button("load 500 more steps", "load 500 more", () => this.host.more(), { key: "m" });
+    this.helpButton = button("help", "?", () => this.toggleHelp(), { key: "?" });
     const choose = () => this.setSpeed(Number(this.speeds.value));
     this.speeds = make("select", { "aria-label": "speed", title: "speed (- and +)", change: choose },
       ...SPEEDS.map((speed) => make("option", { value: speed, selected: speed === 1 }, `${speed}×`)));
@@ -207,7 +209,7 @@ export class Player {
       this.circlesButton, this.numbersButton,
       button("fit the view", "fit", () => this.fit(), { key: "0" }),
       button("full screen", "full", () => toggleFullScreen(this.root), { key: "f" }),
-      button("help", "?", () => this.toggleHelp(), { key: "?" }));
+      this.helpButton);
   }
 
   togglePlay() {
@@ -232,28 +234,32 @@ export class Player {
       [["o"], "zoom out", () => this.zoomBy(1 / 1.4)],
       [["0"], "fit the view (or double click)", () => this.fit()],
       [["f"], "full screen", () => toggleFullScreen(this.root)],
-      [["m"], "", () => this.more.hidden || this.host.more()],
+      [["m"], "load 500 more steps, where there are more", () => this.more.hidden || this.host.more()],
       [["?"], "this help", () => this.toggleHelp()],
     ];
   }
 
   close() {
-    this.pause();
+    clearTimeout(this.timer);
+    this.playing = false;
     for (const stop of this.stops) stop();
   }
 }
 
-// ---- hosts -----------------------------------------------------------------------------------------
+// ---- a page ----------------------------------------------------------------------------------------
 
 // A page without a kernel: each still picture becomes a player once it comes into view.
 export function mountPlayers(style) {
   const watcher = new IntersectionObserver((entries) => {
-    for (const { target, isIntersecting } of entries)
-      if (isIntersecting && target.querySelector(".fem-data")) mountPlayer(target, style);
+    for (const { target, isIntersecting } of entries) {
+      if (!isIntersecting || !target.querySelector(".fem-data")) continue;
+      watcher.unobserve(target);
+      mountPlayer(target, style);
+    }
   });
-  const observe = () => document.querySelectorAll(".fem-still").forEach((root) => watcher.observe(root));
-  observe();
-  setTimeout(observe, 1000); // those that stand in for a widget have waited for it
+  const observe = (which) => document.querySelectorAll(which).forEach((root) => watcher.observe(root));
+  observe(".fem-still:not([data-stands-in])");
+  setTimeout(() => observe(".fem-still"), 1000); // those that stand in for a widget have waited for it
 }
 
 function mountPlayer(root, style) {
@@ -261,42 +267,7 @@ function mountPlayer(root, style) {
   data.captions = Array.from(root.querySelectorAll("tbody td:last-child"), (cell) => cell.textContent.trimEnd());
   const rest = root.querySelectorAll(".fem-note, details");
   root.classList.remove("fem-still");
-  new Player(root, data, style).root.append(...rest);
-}
-
-const leaders = new WeakMap(); // of the views of a widget, the one whose clock ticks
-
-// A widget: its traits follow the player, and the player follows them.
-export function renderPlayer({ model, el }, style) {
-  const set = (name) => (value) => {
-    if (model.get(name) === value) return;
-    model.set(name, value);
-    model.save_changes();
-  };
-  const lead = (playing) => {
-    if (playing) leaders.set(model, leaders.get(model) ?? player);
-    else leaders.delete(model);
-    set("playing")(playing);
-  };
-  const stage = make("div");
-  el.replaceChildren(stage);
-  const player = new Player(stage, model.get("data"), style, {
-    k: model.get("step"), step: set("step"), speed: set("speed"), circles: set("circles"), numbers: set("numbers"),
-    playing: lead, more: () => model.send({ type: "more" }),
-  });
-  const on = {
-    data: (data) => player.setData(data),
-    step: (k) => k !== player.k && player.go(k),
-    speed: (speed) => speed !== player.speed && player.setSpeed(speed),
-    circles: (circles) => circles !== player.circles && player.setCircles(circles),
-    numbers: (numbers) => numbers !== player.numbers && player.setNumbers(numbers),
-    playing: (playing) => {
-      if (playing && !player.playing) player.play(leaders.has(model));
-      if (!playing) player.pause();
-    },
-  };
-  const stops = Object.entries(on).map(([name, act]) => listen(model, `change:${name}`, () => act(model.get(name))));
-  for (const name of ["speed", "circles", "numbers", "playing"]) on[name](model.get(name));
-  stops.push(hideStandIn(model.get("key")), () => player.close());
-  return () => stops.forEach((stop) => stop());
+  const player = new Player(root, data, style);
+  root.append(...rest);
+  player.stops.push(watchTheme(() => root.isConnected || player.close())); // its cell was run again
 }

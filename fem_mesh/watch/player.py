@@ -8,9 +8,10 @@ from typing import Any
 import traitlets
 
 from fem_mesh.errors import MeshError
+from fem_mesh.recording import Recording
 from fem_mesh.steps import Step, many
-from fem_mesh.trace import Recording, Trace
-from fem_mesh.watch.front import PLAYER, module
+from fem_mesh.trace import Trace
+from fem_mesh.watch.front import PLAYER_WIDGET, module
 from fem_mesh.watch.live import Live
 from fem_mesh.watch.page import html_of_trace
 from fem_mesh.watch.wire import as_data
@@ -38,7 +39,7 @@ class Player(Live):
     ``trace`` is what it plays; ``load(500)`` takes further steps of a generator that has not ended.
     """
 
-    _esm = module(PLAYER, "export default { render: (context) => renderPlayer(context, STYLE) };")
+    _esm = module(PLAYER_WIDGET, "export default { render: (context) => renderPlayer(context, STYLE) };")
     data = traitlets.Dict().tag(sync=True)
     step = traitlets.Int(0).tag(sync=True)
     playing = traitlets.Bool(False).tag(sync=True)
@@ -48,6 +49,8 @@ class Player(Live):
 
     def __init__(self, source: Trace | Iterable[Step], view: Any = None, **traits: Any) -> None:
         if isinstance(source, Trace):
+            if view is not None:
+                raise MeshError("view goes with a generator: a trace has one of its own, trace.view")
             self._recording, self.trace = None, source
         else:
             self._recording = Recording(source, view)
@@ -62,15 +65,24 @@ class Player(Live):
         self.on_msg(self._answer)
 
     def load(self, steps: int = MORE) -> None:
-        """Take ``steps`` further steps, as many as there are."""
-        if self._sent == len(self.trace) and self._recording is not None:
-            self._recording.take(steps)
-        self._sent = min(self._sent + steps, len(self.trace))
-        self.data = as_data(self.trace, self._sent)
+        """Take ``steps`` further steps, as many as there are; those that came before a generator fails are shown."""
+        if steps < 1:
+            raise MeshError(f"at least one further step can be taken, not {steps}")
+        try:
+            if self._sent == len(self.trace) and self._recording is not None:
+                self._recording.take(steps)
+        finally:
+            self._sent = min(self._sent + steps, len(self.trace))
+            self.data = as_data(self.trace, self._sent)
 
     def _answer(self, _widget: Any, message: dict[str, Any], _buffers: Any) -> None:
-        if message.get("type") == "more":
+        if message.get("type") != "more":
+            return
+        try:
             self.load()
+        except BaseException as error:  # an interrupt as well: the reader waits for an answer
+            self.send({"type": "failed", "said": f"the generator failed: {type(error).__name__}: {error}"})
+            raise
 
     @traitlets.validate("step")
     def _within(self, proposal: Any) -> int:

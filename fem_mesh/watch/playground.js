@@ -3,28 +3,30 @@
 
 import { View } from "./view.js";
 import { Mesh } from "./mesh.js";
-import { make, button, listenToKeys, showLegend, watchTheme, watchSize, letZoom, toggleFullScreen, listen, hideStandIn, disable } from "./panel.js";
+import { make, button, listenToKeys, toggleHelp, track, showLegend, watchTheme, watchSize, letZoom, toggleFullScreen, disable } from "./panel.js";
+import { copyLines, bytesOf, listen, send, hideStandIn, NO_ANSWER } from "./kernel.js";
 
 const NEAR = 9; // pixels within which a click means a point that is there,
 const NEAREST = 2; // less where points are dense
 const STILL = 4; // pixels that a click may tremble
+const UNDERWAY = 2; // moves of a drag on their way: the second hurries the answer to the first
 const DOOMED_FOR = 260; // milliseconds that an animated insertion shows its cavity,
 const FRESH_FOR = 360; // and its fan
 const TOGGLES = [["circles", "circles", "c"], ["voronoi", "Voronoi", "v"], ["ties", "ties", "t"], ["numbers", "1 2", "n"], ["animated", "animate", "a"]];
 
 class Playground {
   constructor(root, model, style) {
-    Object.assign(this, { root, model, mesh: new Mesh(), ties: [], chosen: null, cursor: null, show: {}, waiting: false, next: null });
+    Object.assign(this, { root, model, mesh: new Mesh(), ties: [], chosen: null, cursor: null, show: {}, unanswered: 0, next: null });
     this.build();
     this.view = new View(this.canvas, style, model.get("box"));
-    letZoom(this.view, () => this.draw(), root, () => false);
+    letZoom(this.view, () => this.draw(), root, { pans: false });
     this.canvas.addEventListener("pointerdown", (event) => this.press(event));
     this.stops = [
       watchTheme((dark) => this.setDark(dark)), watchSize(this.canvas, () => this.draw()),
       listen(model, "msg:custom", (message, buffers) => this.hear(message, buffers)),
       ...TOGGLES.map(([trait]) => listen(model, `change:${trait}`, () => this.setToggle(trait))),
       listen(model, "change:box", () => { this.view.setBox(model.get("box")); this.draw(); }),
-      hideStandIn(model.get("key")),
+      hideStandIn(model.get("key"), root),
     ];
     for (const [trait] of TOGGLES) this.setToggle(trait);
     this.ask({ type: "all" });
@@ -34,22 +36,24 @@ class Playground {
 
   // While the pointer is down only what it does itself is done.
   ask(message) {
-    if (!this.pressed || message.type === "move") this.model.send(message);
+    if (this.pressed && message.type !== "move") return;
+    if (!send(this.model, message)) this.say(NO_ANSWER);
   }
 
-  // While a point is dragged: the latest place, and only when the last one was answered.
+  // While a point is dragged: the latest place, as soon as few others are under way.
   askToMove(message) {
-    if (this.waiting && !message.last) this.next = message;
+    if (this.unanswered >= UNDERWAY && !message.last) this.next = message;
     else {
-      [this.waiting, this.next] = [true, null];
+      this.unanswered += 1;
+      this.next = null;
       this.ask(message);
     }
   }
 
   hear(message, buffers) {
-    if (message.type === "code") return this.copy(message.text);
+    if (message.type === "code") return copyLines(message.text, this.code, (words) => this.say(words));
     if (message.type === "all") {
-      const [points, triangles] = buffers.map((buffer) => buffer.buffer.slice(buffer.byteOffset, buffer.byteOffset + buffer.byteLength));
+      const [points, triangles] = buffers.map(bytesOf);
       this.mesh = new Mesh(new Float64Array(points), new Int32Array(triangles));
       this.show = {};
       clearTimeout(this.timer);
@@ -57,10 +61,11 @@ class Playground {
     if (message.type === "all") this.chosen = null;
     if (message.type === "steps") this.hearSteps(message);
     this.ties = message.ties ?? [];
+    if (message.voronoi) this.mesh.voronoi = new Float64Array(bytesOf(buffers.at(-1)));
     if (this.chosen !== null && this.chosen >= this.mesh.x.length) this.chosen = null;
     this.readOut(message);
     this.draw();
-    this.waiting = false;
+    this.unanswered = Math.max(0, this.unanswered - 1);
     if (this.next) this.askToMove(this.next);
   }
 
@@ -69,8 +74,7 @@ class Playground {
     clearTimeout(this.timer);
     this.show = {};
     const calm = window.matchMedia("(prefers-reduced-motion: reduce)").matches;
-    const before = animated && !calm ? new Mesh() : null;
-    if (before) Object.assign(before, { x: [...this.mesh.x], y: [...this.mesh.y], rows: new Map(this.mesh.rows), dirty: true });
+    const before = animated && !calm ? this.mesh.copy() : null;
     for (const step of steps) this.mesh.apply(step);
     if (!steps.length) return;
     const last = steps.at(-1), cavity = steps.find((step) => step.kind === "cavity");
@@ -111,12 +115,11 @@ class Playground {
 
   // A click adds, or chooses the point that is there; shift-click takes it out; dragging moves it, or the view.
   press(event) {
-    if (event.button) return;
+    if (event.button || this.pressed) return;
     this.root.focus({ preventScroll: true });
-    this.canvas.setPointerCapture(event.pointerId);
     const i = this.under(this.view.toWorld(...this.view.at(event))), from = this.view.at(event);
     let [dragged, last] = [false, from];
-    this.pressed = true;
+    [this.pressed, this.unanswered] = [true, 0];
     const move = (moved) => {
       const [px, py] = this.view.at(moved);
       dragged ||= Math.hypot(px - from[0], py - from[1]) > STILL;
@@ -126,16 +129,18 @@ class Playground {
       else this.view.panBy(px - last[0], py - last[1]), this.draw();
       last = [px, py];
     };
-    const release = (moved) => {
-      this.canvas.removeEventListener("pointermove", move);
+    const letGo = (at) => {
       this.pressed = false;
-      const [x, y] = this.view.toWorld(...this.view.at(moved));
+      const [x, y] = this.view.toWorld(...at);
       if (dragged && i !== null) this.askToMove({ type: "move", i, x, y, last: true });
-      else if (!dragged && i !== null) event.shiftKey ? this.ask({ type: "remove", i }) : this.choose(i);
+      return [x, y];
+    };
+    const release = (moved) => {
+      const [x, y] = letGo(this.view.at(moved));
+      if (!dragged && i !== null) event.shiftKey ? this.ask({ type: "remove", i }) : this.choose(i);
       else if (!dragged) this.add(x, y);
     };
-    this.canvas.addEventListener("pointermove", move);
-    this.canvas.addEventListener("pointerup", release, { once: true });
+    track(this.canvas, event, move, release, () => letGo(last));
   }
 
   add(x, y) {
@@ -191,7 +196,7 @@ class Playground {
       [["ArrowUp"], "", (event) => this.moveCursor(event, 0, 1)],
       [["ArrowDown"], "", (event) => this.moveCursor(event, 0, -1)],
       [["Enter", " "], "add a point at the cross, or choose the one there", () => this.addAtCursor()],
-      [["Escape"], "", () => { [this.cursor, this.chosen] = [null, null]; this.draw(); }],
+      [["Escape"], "drop the cross, and the choice", () => { [this.cursor, this.chosen] = [null, null]; this.draw(); }],
       ...TOGGLES.map(toggle),
       [["i"], "zoom in (or ctrl and the wheel)", () => this.zoomBy(1.4)],
       [["o"], "zoom out", () => this.zoomBy(1 / 1.4)],
@@ -207,7 +212,7 @@ class Playground {
     const { mesh = this.mesh, old, circles, ...shown } = this.show, get = (trait) => this.model.get(trait);
     const frame = { x: mesh.x, y: mesh.y, triangles: old ?? mesh.triangles, ...shown };
     frame.circles = get("circles") ? mesh.triangles : circles;
-    if (get("voronoi")) frame.voronoi = mesh.voronoi(10 * Math.hypot(this.view.width, this.view.height) / this.view.scale);
+    if (get("voronoi")) frame.voronoi = mesh.voronoi;
     if (get("ties") && mesh === this.mesh) frame.ties = this.ties;
     if (this.chosen !== null && !frame.point) frame.point = [mesh.x[this.chosen], mesh.y[this.chosen]];
     if (this.cursor) frame.cross = this.cursor;
@@ -224,11 +229,11 @@ class Playground {
 
   setToggle(trait) {
     this.toggles[trait].setAttribute("aria-pressed", String(this.isOn(trait)));
-    if (trait !== "ties" || !this.model.get("ties")) this.draw(); // ties come from the kernel
+    if (!["ties", "voronoi"].includes(trait) || !this.model.get(trait)) this.draw(); // these come from the kernel
   }
 
   isOn(trait) {
-    return this.model.get(trait) ?? this.mesh.x.length <= 60; // numbers: null means if there are few
+    return this.model.get(trait) ?? this.mesh.x.length <= this.view.style.limits.numbers; // numbers: null means if there are few
   }
 
   toggle(trait) {
@@ -244,23 +249,18 @@ class Playground {
   // All points, and what the view showed at first.
   fit() {
     const [left, right, bottom, top] = this.model.get("box"), { x, y } = this.mesh, room = 0.04 * (right - left);
-    this.view.setBox([
-      Math.min(left, ...x.map((v) => v - room)), Math.max(right, ...x.map((v) => v + room)),
-      Math.min(bottom, ...y.map((v) => v - room)), Math.max(top, ...y.map((v) => v + room)),
-    ]);
+    const least = (values, edge) => values.reduce((a, v) => Math.min(a, v - room), edge);
+    const most = (values, edge) => values.reduce((a, v) => Math.max(a, v + room), edge);
+    this.view.setBox([least(x, left), most(x, right), least(y, bottom), most(y, top)]);
     this.draw();
   }
 
   toggleHelp() {
-    this.help.hidden = !this.help.hidden;
+    toggleHelp(this.help, this.helpButton);
   }
 
-  copy(text) {
-    this.code.hidden = false;
-    this.code.value = text;
-    this.code.rows = Math.min(6, text.split("\n").length);
-    const done = () => (this.caption.textContent = "copied: paste it into a cell");
-    navigator.clipboard?.writeText(text).then(done, () => this.code.select());
+  say(words) {
+    this.caption.textContent = words;
   }
 
   build() {
@@ -281,10 +281,10 @@ class Playground {
   }
 
   buildBars() {
-    const send = (type) => () => this.ask({ type });
-    const word = (label, face, type) => button(label, face, send(type));
-    this.undoButton = button("undo", "undo", send("undo"), { key: "ctrl-z" });
-    this.redoButton = button("redo", "redo", send("redo"), { key: "ctrl-y" });
+    const word = (label, face, type, shortcut) => button(label, face, () => this.ask({ type }), shortcut);
+    this.undoButton = word("undo", "undo", "undo", { key: "ctrl-z" });
+    this.redoButton = word("redo", "redo", "redo", { key: "ctrl-y" });
+    this.helpButton = button("help", "?", () => this.toggleHelp(), { key: "?" });
     this.toggles = {};
     for (const [trait, face, key] of TOGGLES)
       this.toggles[trait] = button({ animated: "animate insertions" }[trait] ?? trait, face, () => this.toggle(trait), { key, pressed: false });
@@ -297,7 +297,7 @@ class Playground {
         ...Object.values(this.toggles), make("span", { class: "fem-space" }),
         button("fit the view", "fit", () => this.fit(), { key: "0" }),
         button("full screen", "full", () => toggleFullScreen(this.root), { key: "f" }),
-        button("help", "?", () => this.toggleHelp(), { key: "?" })),
+        this.helpButton),
     ];
   }
 

@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 import traitlets
 
-from fem_mesh.algorithms.live import LiveDelaunay
+from fem_mesh.algorithms import ahead
+from fem_mesh.algorithms.live import LiveDelaunay, say_move
 from fem_mesh.errors import MeshError
 from fem_mesh.mesh.mesh import Mesh
 from fem_mesh.mesh.points import as_points, view_box
@@ -20,7 +21,7 @@ from fem_mesh.trace import Trace
 from fem_mesh.watch.front import PLAYGROUND, module
 from fem_mesh.watch.live import Live
 from fem_mesh.watch.page import html_of_picture
-from fem_mesh.watch.svg import svg_of_step
+from fem_mesh.watch.svg import svg_of_mesh
 
 BOX = (-0.06, 1.06, -0.06, 1.06)  # what an empty playground shows: the unit square
 FILLED = 0.2  # points that spread so far in the unit square are seen in it
@@ -28,7 +29,9 @@ RING = ((5, 0), (4, 3), (3, 4), (0, 5), (-3, 4), (-4, 3), (-5, 0), (-4, -3), (-3
 GRID = 5  # points a side
 MARGIN = 0.06  # around the unit square, as a share of it
 MOST_TOLD = 300  # points to begin with that are inserted one by one in the trace
-MOST_UNDONE = 200
+MOST_UNDONE = 200  # changes, or as many as take
+MOST_KEPT = 50_000_000  # bytes
+FAR = 20.0  # how far Voronoi edges without an end go, as a part of what the view shows
 NOTE = "A picture of the playground: where the notebook runs, its cell makes it answer clicks."
 
 
@@ -80,7 +83,7 @@ class Playground(Live):
         self._said = "click to add a point"
         self._begin(given)
         self.on_msg(self._answer)
-        self.observe(lambda _change: self._send_all(), "ties")
+        self.observe(lambda _change: self._send_all(), ["ties", "voronoi"])
 
     # ---- what there is ---------------------------------------------------------------------------
 
@@ -172,9 +175,14 @@ class Playground(Live):
 
     def _remember(self, state: Any = None) -> None:
         self._drop()
-        self._done.append(state or self._state())
+        self._push(state or self._state())
+
+    def _push(self, state: Any) -> None:
+        self._done.append(state)
         self._undone.clear()
         del self._done[:-MOST_UNDONE]
+        while len(self._done) > 1 and sum(map(_weight, self._done)) > MOST_KEPT:  # ends: one is left
+            del self._done[0]
 
     def _go_back(self, here: list[Any], there: list[Any]) -> None:
         self._drop()
@@ -187,6 +195,8 @@ class Playground(Live):
 
     def _drag(self, i: int, x: float, y: float, last: bool) -> None:
         """A drag is many moves to the eye, and one to the trace and to undo."""
+        if self._dragged is not None and self._dragged[2] != i:  # another hand, or one whose end was not heard
+            self._drop()
         before = self._dragged or (self._state(), _rows(self._live.triangles), i)
         steps = self._live.move(i, x, y)
         self._said, self._dragged = steps[-1].caption, before
@@ -200,16 +210,18 @@ class Playground(Live):
             return
         (state, before, i), self._dragged = self._dragged, None
         now, place = _rows(self._live.triangles), tuple(self.points[i].tolist())
-        self._done.append(state)
-        self._undone.clear()
-        shown = Step("move", self._said, point=place, new_points=[(i, *place)], removed=before - now, added=now - before)
+        points = state[1][0][1:]
+        if place == tuple(points[i].tolist()):  # it is back, or never left
+            return
+        self._push(state)
+        shown = Step("move", say_move, point=place, new_points=[(i, *place)], removed=before - now, added=now - before, i=i)
         self._steps.append(shown)
 
     # ---- the browser -----------------------------------------------------------------------------
 
     def _answer(self, _widget: Any, message: dict[str, Any], _buffers: Any) -> None:
         actions: dict[str, Callable[[], Any]] = {
-            "all": self._send_all,
+            "all": self._greet,
             "add": lambda: self.add(message["x"], message["y"]),
             "remove": lambda: self.remove(message["i"]),
             "move": lambda: self._drag(message["i"], message["x"], message["y"], bool(message.get("last"))),
@@ -227,6 +239,11 @@ class Playground(Live):
         except MeshError as error:
             self._said = str(error)
             self._tell({"type": "steps", "steps": []})
+
+    def _greet(self) -> None:
+        """A browser asks for everything: what it shows may soon be large."""
+        ahead.compile_ahead()
+        self._send_all()
 
     def _add_all(self, points: np.ndarray) -> None:
         self._remember()
@@ -259,15 +276,18 @@ class Playground(Live):
 
     def _tell(self, message: dict[str, Any], buffers: list[bytes] | None = None) -> None:
         message |= {"said": self._said, "undo": bool(self._done), "redo": bool(self._undone)}
-        if self.ties:
-            mesh = self.mesh
+        mesh = self.mesh if self.ties or self.voronoi else None
+        if mesh is not None and self.ties:
             message["ties"] = cocircular_edges(mesh.points, mesh.triangles, mesh.neighbors).ravel().tolist()
+        if mesh is not None and self.voronoi:
+            message["voronoi"] = True
+            buffers = [*(buffers or []), mesh.voronoi().ends(FAR * max(self._extent)).astype("<f8").tobytes()]
         self.send(message, buffers)
         self.version += 1
 
     def still(self, key: str) -> str:
-        trace = self.trace
-        return html_of_picture(svg_of_step(trace, -1) if len(trace) else "", repr(self), key, NOTE)
+        svg = svg_of_mesh(self.mesh, repr(self), circles=self.circles, numbers=self.numbers, voronoi=self.voronoi)
+        return html_of_picture(svg, repr(self), key, NOTE)
 
     def __repr__(self) -> str:
         return repr(self.mesh).replace("Mesh", "Playground", 1) if len(self.points) else "Playground: no points yet"
@@ -288,6 +308,10 @@ def _box_of(points: np.ndarray) -> Any:
 def _rows(triangles: np.ndarray) -> set[Any]:
     """Triangles as a set, each with its lowest corner first."""
     return {(a, b, c) if a < b and a < c else (b, c, a) if b < c else (c, a, b) for a, b, c in triangles.tolist()}
+
+
+def _weight(state: Any) -> int:
+    return sum(array.nbytes for array in state[1])
 
 
 def _as_message(step: Step) -> dict[str, Any]:

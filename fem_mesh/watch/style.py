@@ -64,6 +64,13 @@ PAPER = {False: "#FFFFFF", True: "#111318"}
 INK = {False: "#1A1A1A", True: "#EDEDED"}
 
 
+VIEWS = 20  # circles larger than so many views are drawn as an arc
+MOST_NUMBERS = 60  # more points than this go without numbers, unless asked
+THINNEST = 1.6  # of the thick lines, in points
+FULL_SIZE = 120  # up to so many vertices have markers of full size
+MOST_MARKED = 1_000  # more vertices than this go without a marker
+
+
 def color_of(name: str, dark: bool = False) -> str:
     """The colour of a role on a light or a dark ground."""
     return ROLES[name].dark if dark else ROLES[name].color
@@ -75,4 +82,5 @@ def as_table() -> dict[str, Any]:
         name: {f.name: getattr(role, f.name) for f in fields(role) if getattr(role, f.name) != f.default}
         for name, role in ROLES.items()
     }
-    return {"roles": roles, "paper": list(PAPER.values()), "ink": list(INK.values()), "kinds": KINDS}
+    limits = {"views": VIEWS, "numbers": MOST_NUMBERS, "thinnest": THINNEST, "fullSize": FULL_SIZE, "marked": MOST_MARKED}
+    return {"roles": roles, "limits": limits, "paper": list(PAPER.values()), "ink": list(INK.values()), "kinds": KINDS}

@@ -11,11 +11,13 @@ from urllib.parse import quote
 
 import numpy as np
 
-from fem_mesh.watch.layers import CORE, HOLLOW, Layer, layers_of, legend_of, rings_of
+from fem_mesh.mesh.points import view_box
+from fem_mesh.watch.layers import CORE, HOLLOW, Layer, layers_of, layers_of_mesh, legend_of, rings_of
 from fem_mesh.watch.paths import FAR, NEAR, SHAPES, Box, View, closed, line, trails
 from fem_mesh.watch.style import INK, PAPER, ROLES, color_of
 
 if TYPE_CHECKING:
+    from fem_mesh.mesh.mesh import Mesh
     from fem_mesh.trace import Trace
 
 # All lengths on the page are whole tenths of a pixel.
@@ -92,6 +94,14 @@ def svg_of_layers(
             "</svg>",
         ]
     )
+
+
+def svg_of_mesh(mesh: Mesh, title: str, **options: Any) -> str:
+    """A mesh as an SVG image, or "" if there is nothing to see; ``options`` are those of ``layers_of_mesh``."""
+    if not len(mesh.points):
+        return ""
+    layers = layers_of_mesh(mesh, **options)
+    return svg_of_layers(layers, legend_of(layers), view_box(mesh.points), title)
 
 
 def data_uri(svg: str) -> str:

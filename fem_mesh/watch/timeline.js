@@ -1,5 +1,7 @@
 // The strip below a player: a lane for each kind of step, a curve of the smallest angle, and where we are.
 
+import { track } from "./panel.js";
+
 const LANE = 13; // pixels
 const CURVE = 34;
 const GAP = 5;
@@ -9,10 +11,9 @@ export class Timeline {
     Object.assign(this, { canvas, trace, style, dark: false });
     this.context = canvas.getContext("2d");
     canvas.addEventListener("pointerdown", (event) => {
-      canvas.setPointerCapture(event.pointerId);
+      if (event.button) return;
       const to = (moved) => seek(this.stepAt(moved.clientX - canvas.getBoundingClientRect().left));
-      canvas.addEventListener("pointermove", to);
-      canvas.addEventListener("pointerup", () => canvas.removeEventListener("pointermove", to), { once: true });
+      track(canvas, event, to, () => null);
       to(event);
     });
   }
@@ -21,7 +22,7 @@ export class Timeline {
   setTrace(trace) {
     this.trace = trace;
     this.kinds = [...new Set(trace.steps.map((step) => step.kind))];
-    this.highest = Math.max(...trace.angles.filter((angle) => angle !== null), 1e-9);
+    this.highest = trace.angles.reduce((highest, angle) => Math.max(highest, angle ?? 0), 1e-9);
     this.canvas.style.height = `${LANE * this.kinds.length + GAP + CURVE}px`;
     this.back = null;
   }

@@ -9,18 +9,13 @@
 //   voronoi     lines of an overlay, four coordinates each, flat
 //   cross       [x, y] of a cursor that keys move
 //   tint        an opacity for each of `triangles`
-// All but x and y may be left out. Roles, paper and ink come from fem_mesh/watch/style.py.
+// All but x and y may be left out. Roles, limits, paper and ink come from fem_mesh/watch/style.py.
 
 import { Camera } from "./camera.js";
 import { circumcircle } from "./geometry.js";
 
 const PX = 4 / 3; // CSS pixels in a point of 1/72 inch
-const VIEWS = 20; // circles larger than so many views are drawn as an arc
 const MOST_DASHED = 300; // more circles than this are drawn with thin whole lines
-const FULL_SIZE = 120; // up to so many vertices have markers of full size
-const MOST_MARKED = 1000; // more vertices than this go without a marker, unless asked
-const MOST_NUMBERS = 60; // more points than this go without numbers, unless asked
-const THINNEST = 1.6; // of thick lines, in points
 const FINEST = 0.7; // of a mesh's lines, in pixels
 const A_STROKE = 600; // edges in one path: long paths take more than their share of time
 
@@ -41,7 +36,7 @@ export class View extends Camera {
   // Draw a frame; returns the roles that it shows, for the legend.
   draw(frame, { circles = true, numbers = null, markers = null } = {}) {
     if (!this.resize()) return [];
-    const g = this.context;
+    const g = this.context, { limits } = this.style;
     g.setTransform(this.ratio, 0, 0, this.ratio, 0, 0);
     g.fillStyle = this.style.paper[+this.dark];
     g.fillRect(0, 0, this.width, this.height);
@@ -49,7 +44,7 @@ export class View extends Camera {
     this.project(frame);
     const shown = new Set();
     const count = frame.there ? frame.there.reduce((n, t) => n + t, 0) : this.px.length;
-    const scale = Math.min(1, Math.sqrt(FULL_SIZE / Math.max(count, 1)));
+    const scale = Math.min(1, Math.sqrt(limits.fullSize / Math.max(count, 1)));
 
     if (frame.tint) this.tinted(frame.triangles, frame.tint);
     for (const name of ["visited", "doomed", "fresh"]) this.fills(frame[name], name === "fresh" ? "new" : name);
@@ -65,10 +60,10 @@ export class View extends Camera {
       this.diametrals(frame.encroached, shown);
     }
     if (frame.waiting?.length) this.markers(this.toPixels(frame.waiting), "waiting", 1, shown);
-    if (markers ?? count <= MOST_MARKED) this.vertices(frame, scale);
+    if (markers ?? count <= limits.marked) this.vertices(frame, scale);
     if (frame.point) this.target(this.toScreen(...frame.point), shown);
     if (frame.cross) this.cross(this.toScreen(...frame.cross));
-    if (numbers ?? this.px.length <= MOST_NUMBERS) this.numbers(frame);
+    if (numbers ?? this.px.length <= limits.numbers) this.numbers(frame);
     this.drawn += 1;
     return Object.keys(this.roles).filter((name) => shown.has(name));
   }
@@ -185,7 +180,7 @@ export class View extends Camera {
 
   pen(name, scale = 1) {
     const g = this.context, role = this.roles[name];
-    const width = PX * Math.max(role.width * scale, Math.min(role.width, THINNEST));
+    const width = PX * Math.max(role.width * scale, Math.min(role.width, this.style.limits.thinnest));
     g.strokeStyle = this.color(name);
     g.lineWidth = width;
     g.setLineDash(role.dash.map((length) => length * width));
@@ -223,7 +218,7 @@ export class View extends Camera {
       // A circle that passes nowhere near the page need not be drawn.
       const away = Math.hypot(x - this.width / 2, y - this.height / 2);
       if (!(Math.abs(away - r) < reach)) continue;
-      if (r > VIEWS * reach) this.arc(path, x, y, r, away, reach);
+      if (r > this.style.limits.views * reach) this.arc(path, x, y, r, away, reach);
       else {
         path.moveTo(x + r, y);
         path.arc(x, y, r, 0, 2 * Math.PI);

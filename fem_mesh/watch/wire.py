@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fem_mesh.lifetimes import NEVER
+from fem_mesh.lifetimes import NEVER, Lifetimes
 
 if TYPE_CHECKING:
     from fem_mesh.steps import Step
@@ -24,7 +24,7 @@ def as_data(trace: Trace, steps: int | None = None) -> dict[str, Any]:
     n = len(trace) if steps is None else min(steps, len(trace))
     left, right, bottom, top = map(float, trace.view_box())
     unit = (right - left) * UNIT
-    points = _lifetimes(trace._points, n)
+    points = _lifetimes(trace.lifetimes("points"), n)
     points["rows"] = np.rint((points["rows"] - np.array([left, bottom])) / unit).astype(np.int64)
     kinds = list(dict.fromkeys(step.kind for step in trace[:n]))
     angles = trace.min_angles()[:n].round(2).tolist()
@@ -34,15 +34,15 @@ def as_data(trace: Trace, steps: int | None = None) -> dict[str, Any]:
         "steps": [_step(step, kinds.index(step.kind), left, bottom, unit) for step in trace[:n]],
         "captions": [step.caption for step in trace[:n]],
         "angles": [None if angle != angle else angle for angle in angles],
-        "points": _flat({**points, "numbers": points["numbers"]}),
-        "triangles": _flat(_lifetimes(trace._triangles, n)),
-        "segments": _flat(_lifetimes(trace._segments, n)),
+        "points": _flat(points),
+        "triangles": _flat(_lifetimes(trace.lifetimes("triangles"), n)),
+        "segments": _flat(_lifetimes(trace.lifetimes("segments"), n)),
         "makes_points": trace.makes_points,
         "more": n < len(trace) or not trace.complete,
     }
 
 
-def _lifetimes(table: Any, n: int) -> dict[str, Any]:
+def _lifetimes(table: Lifetimes, n: int) -> dict[str, Any]:
     """The rows born before step ``n``: how much later than the row before, and how many steps each lived (0: on)."""
     born, died = table.lifetimes()
     here = born < n

@@ -2,10 +2,14 @@ import importlib.util
 import os
 import re
 import shutil
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import pytest
+
+from .notebook import close_notebooks, is_tidy
+from .shared import desk
 
 CHROMIUM = ("chromium", "chromium-browser", "google-chrome")
 FLAGS = [
@@ -13,8 +17,9 @@ FLAGS = [
     *("--disable-background-networking", "--disable-component-update", "--disable-sync"),
 ]
 SCREEN = {"width": 1280, "height": 900}
+# What JupyterLab says of its own questions to a kernel that is stopped.
+OF_THE_LAB = re.compile("Canceled future for (create_subshell|debug)_request")
 ELSEWHERE = re.compile(r"^(https?|wss?)://(?!127\.0\.0\.1[:/])")
-OUTCOME = pytest.StashKey()
 
 
 def chromium():
@@ -33,8 +38,9 @@ def missing():
 def equipped():
     """Without a browser these tests are skipped; where FEM_MESH_BROWSER=required says so, they fail."""
     if lack := missing():
-        required = os.environ.get("FEM_MESH_BROWSER") == "required"
-        (pytest.fail if required else pytest.skip)(f"tests in a browser: {lack}")
+        if os.environ.get("FEM_MESH_BROWSER") == "required":
+            pytest.fail(f"tests in a browser: {lack}")
+        pytest.skip(f"tests in a browser: {lack}")
 
 
 @dataclass
@@ -47,14 +53,22 @@ class Seen:
 
     def attend(self, context):
         context.on("console", self._said)
-        context.on("weberror", lambda error: self.errors.append(error.error.stack or str(error.error)))
+        context.on("weberror", lambda error: self._fail(error.error.stack or str(error.error)))
         context.route(ELSEWHERE, self._refuse)
         context.route_web_socket(ELSEWHERE, lambda socket: self.foreign.append(socket.url))
+
+    def clear(self):
+        for told in (self.errors, self.foreign, self.console):
+            told.clear()
 
     def _said(self, message):
         self.console.append(f"{message.type}: {message.text}")
         if message.type == "error":
-            self.errors.append(message.text)
+            self._fail(message.text)
+
+    def _fail(self, text):
+        if not OF_THE_LAB.search(text):
+            self.errors.append(text)
 
     def _refuse(self, route):
         self.foreign.append(route.request.url)
@@ -63,15 +77,19 @@ class Seen:
 
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_makereport(item, call):
+    """Of a test that failed: what its pages said, and what they looked like."""
     report = yield
-    if call.when == "call":
-        item.stash[OUTCOME] = report
+    known = getattr(item, "funcargs", {})
+    if report.failed and "browser" in known:
+        if room := known.get("room"):
+            room.spoilt = True
+        told = [f"{name}: {line}" for name in ("errors", "foreign", "console") for line in getattr(known["everything"], name)]
+        for k, page in enumerate(page for context in known["browser"].contexts for page in context.pages):
+            path = item.config.cache.mkdir("browser") / f"{re.sub('[^a-z_]', '', item.name)}_{k}.png"
+            page.screenshot(path=path)
+            told.append(f"{page.url} looked like {path}")
+        report.sections.append(("the browser", "\n".join(told)))
     return report
-
-
-def failed(item):
-    report = item.stash.get(OUTCOME, None)
-    return report is not None and report.failed
 
 
 @pytest.fixture(scope="package")
@@ -97,48 +115,85 @@ def browser(equipped):
         browser.close()
 
 
-@pytest.fixture
-def seen(request):
-    """Errors and foreign requests of all pages of a test; printed when it fails."""
-    seen = Seen()
-    yield seen
-    if failed(request.node):
-        for name in ("errors", "foreign", "console"):
-            print(f"\n{name} in the browser:", *getattr(seen, name), sep="\n  ")
+@pytest.fixture(scope="package")
+def everything():
+    return Seen()
 
 
 @pytest.fixture
-def contexts(request, browser, seen, tmp_path):
-    """Makes browser contexts that are attended to, and closes them; pages of a test that failed are pictured."""
+def seen(everything):
+    """Errors and foreign requests of all pages of a test."""
+    everything.clear()
+    return everything
+
+
+@pytest.fixture
+def contexts(browser, seen):
+    """Makes browser contexts that are attended to, and closes them."""
     made = []
 
     def make(**options):
-        context = browser.new_context(**{"viewport": SCREEN} | options)
-        context.set_default_timeout(20_000)
-        seen.attend(context)
-        made.append(context)
-        return context
+        made.append(new_context(browser, seen, **options))
+        return made[-1]
 
     yield make
-    if failed(request.node):
-        for k, page in enumerate(page for context in made for page in context.pages):
-            page.screenshot(path=tmp_path / f"page{k}.png")
-            print(f"\n{page.url} looked like {tmp_path}/page{k}.png")
     for context in made:
         context.close()
 
 
-@pytest.fixture
-def fresh_lab(lab):
-    yield lab
-    lab.reset()
+def new_context(browser, seen, **options):
+    context = browser.new_context(**{"viewport": SCREEN} | options)
+    context.set_default_timeout(20_000)
+    seen.attend(context)
+    return context
+
+
+class Room:
+    """A page with the lab in it, for one notebook after the other: the lab takes seconds to load, a notebook does not."""
+
+    def __init__(self, lab, browser, seen):
+        self.lab, self.browser, self.seen = lab, browser, seen
+        self.page, self.taken, self.spoilt = None, False, False
+
+    @contextmanager
+    def notebook(self):
+        """The page, without a notebook: ``open_notebook(page, [...])`` comes next."""
+        assert not self.taken, "one notebook at a time"
+        self.taken = True
+        self.seen.clear()
+        if self.page is None:
+            key = {"Authorization": f"token {self.lab.token}"}
+            context = new_context(self.browser, self.seen, base_url=self.lab.url, extra_http_headers=key)
+            self.page = context.new_page()
+        try:
+            yield self.page
+        finally:
+            self.taken = False
+            if self.spoilt or not is_tidy(self.page):
+                self.page.context.close()
+                self.page, self.spoilt = None, False
+            else:
+                close_notebooks(self.page)
+            self.lab.reset()
+
+
+@pytest.fixture(scope="package")
+def room(lab, browser, everything):
+    return Room(lab, browser, everything)
 
 
 @pytest.fixture
-def page(fresh_lab, contexts):
-    """An empty page of a fresh browser context that knows the lab: ``open_notebook(page, [...])`` comes next."""
-    key = {"Authorization": f"token {fresh_lab.token}"}
-    return contexts(base_url=fresh_lab.url, extra_http_headers=key).new_page()
+def page(room, seen):
+    """The lab's page, for this test alone."""
+    with room.notebook() as page:
+        yield page
+
+
+@pytest.fixture(scope="module")
+def opened(room, request):
+    """The notebook that a module's tests share: the cells in its ``NOTEBOOK``, run."""
+    with desk(room, *request.module.NOTEBOOK) as opened:
+        yield opened
 
 
 @pytest.fixture

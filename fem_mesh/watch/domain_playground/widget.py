@@ -18,15 +18,15 @@ from fem_mesh.errors import MeshError
 from fem_mesh.kernel import compiling
 from fem_mesh.mesh.mesh import Mesh
 from fem_mesh.mesh.points import view_box
+from fem_mesh.recording import record
 from fem_mesh.steps import many
-from fem_mesh.trace import Trace, record
+from fem_mesh.trace import Trace
+from fem_mesh.watch.domain_playground.sketch import SHAPES, Sketch, number, places, wrapped
+from fem_mesh.watch.domain_playground.tell import arrays_of, encroached_segments, say_state
 from fem_mesh.watch.front import DOMAIN_PLAYGROUND, css, module
-from fem_mesh.watch.layers import layers_of_mesh, legend_of
 from fem_mesh.watch.live import Live
 from fem_mesh.watch.page import html_of_picture
-from fem_mesh.watch.sketch import SHAPES, Sketch, number, places, wrapped
-from fem_mesh.watch.svg import svg_of_layers
-from fem_mesh.watch.tell import arrays_of, encroached_segments, say_state
+from fem_mesh.watch.svg import svg_of_mesh
 from fem_mesh.watch.wire import as_data
 
 PAGE = (0.0, 6.0, 0.0, 4.0)  # left, right, bottom, top of an empty one
@@ -75,7 +75,7 @@ class DomainPlayground(Live):
     mesh
     """
 
-    _css = css("domain_playground.css")
+    _css = css("domain_playground/board.css")
     _esm = module(DOMAIN_PLAYGROUND, "export default { render: (context) => renderDomainPlayground(context, STYLE) };")
     min_angle = traitlets.Float(20.0, min=0.0, max=STEEPEST).tag(sync=True)
     size = traitlets.Float(None, allow_none=True).tag(sync=True)
@@ -85,9 +85,12 @@ class DomainPlayground(Live):
     mesh = traitlets.Instance(Mesh, allow_none=True, read_only=True)
 
     def __init__(self, domain: Domain | None = None, **traits: Any) -> None:
+        if domain is not None and not isinstance(domain, Domain):
+            raise MeshError(f"a DomainPlayground begins with a Domain, not {domain!r:.80}: fm.l_shape() is one")
         self._starts: dict[str, Domain] = {}  # what was begun with, besides the shapes
         self._sketch = Sketch()
         self._key: tuple[Any, ...] | None = None  # what the mesh was made for
+        self._opened = False
         self._most = MOST_POINTS
         self._domain: Domain | None = None
         self._trace: Trace | None = None
@@ -95,9 +98,8 @@ class DomainPlayground(Live):
         self.where: tuple[float, float] | None = None
         super().__init__(**traits)
         if domain is not None:
-            if not isinstance(domain, Domain):
-                raise MeshError(f"a DomainPlayground begins with a Domain, not {domain!r:.80}: fm.l_shape() is one")
             self._sketch = self._begin(domain)
+        self._opened = True
         self._update()
         self.on_msg(self._answer)
 
@@ -156,9 +158,10 @@ class DomainPlayground(Live):
             return
         with self.hold_trait_notifications():
             if key != self._key:
-                self._key, self._most, self._trace = key, most, None
+                self._key, self._most, self._trace = None, most, None  # no mesh is there, should this be interrupted
                 with compiling(False if most < MOST_POINTS else None):
                     self._mesh_anew()
+                self._key = key
             self._tell(serial, drawn)
 
     def _mesh_anew(self) -> None:
@@ -175,7 +178,7 @@ class DomainPlayground(Live):
 
     @traitlets.observe(*BOUNDS)
     def _bounds_changed(self, _change: Any) -> None:
-        if self._key is not None:
+        if self._opened:
             self._update(most=MOST_POINTS if ahead.is_ready() else self._most)
 
     @traitlets.observe("domain")
@@ -197,17 +200,18 @@ class DomainPlayground(Live):
 
     def _answer(self, _widget: Any, message: dict[str, Any], _buffers: Any) -> None:
         kind, serial = message["type"], message.get("serial")
-        if kind == "hello":
-            ahead.compile_ahead()
-            self._tell(serial, drawn=True, to="hello")
-        elif kind == "steps":
-            self._send_steps(serial)
-        elif kind == "ask":
-            try:
+        try:
+            if kind == "hello":
+                ahead.compile_ahead()
+                self._tell(serial, drawn=True, to="hello")
+            elif kind == "steps":
+                self._send_steps(serial)
+            elif kind == "ask":
                 self._ask(serial, message)
-            except Exception as error:  # the browser waits for an answer, whatever happens
-                self.send({"type": "mesh", "serial": serial, "refusal": f"{type(error).__name__}: {error}", "where": None})
-                raise
+        except BaseException as error:  # an interrupt as well: the browser waits for an answer
+            answer = "steps" if kind == "steps" else "mesh"
+            self.send({"type": answer, "serial": serial, "refusal": f"{type(error).__name__}: {error}", "where": None})
+            raise
 
     def _ask(self, serial: str | None, message: dict[str, Any]) -> None:
         bounds = {name: message[name] for name in BOUNDS if name in message}
@@ -259,17 +263,19 @@ class DomainPlayground(Live):
 
     def _send_steps(self, serial: str | None) -> None:
         trace = self.trace
-        if trace is not None:
+        if trace is None:
+            answer: dict[str, Any] = {"refusal": "there is no domain to play the steps of"}
+        else:
             cut = "" if trace.complete else f"the first {len(trace):,} steps of it: the run goes on"
-            self.send({"type": "steps", "serial": serial, "data": as_data(trace), "cut": cut})
+            if self._is_cut and trace.complete:
+                cut = f"a run that may add {self._most:,} points" + "; more when that is compiled" * (self._most < MOST_POINTS)
+            answer = {"data": as_data(trace), "cut": cut}
+        self.send({"type": "steps", "serial": serial, **answer})
 
     # ---- showing -----------------------------------------------------------------------------------
 
     def still(self, key: str) -> str:
-        svg = ""
-        if self.mesh is not None and len(self.mesh.triangles):
-            layers = layers_of_mesh(self.mesh, numbers=False)
-            svg = svg_of_layers(layers, legend_of(layers), view_box(self.mesh.points), repr(self))
+        svg = "" if self.mesh is None else svg_of_mesh(self.mesh, repr(self), numbers=False)
         return html_of_picture(svg, f"{self!r}; {say_state(self.mesh)}" if svg else repr(self), key, NOTE)
 
     def __repr__(self) -> str:
@@ -306,7 +312,10 @@ def _as_size(size: float | None) -> float | None:
 
 
 def _as_spots(spots: Any) -> list[tuple[float, float, float]]:
-    triples = [(float(x), float(y), float(h)) for x, y, h in spots]
+    try:
+        triples = [(float(x), float(y), float(h)) for x, y, h in spots]
+    except (TypeError, ValueError):
+        triples = [(0.0, 0.0, math.nan)]
     if not all(math.isfinite(x) and math.isfinite(y) and 0 < h < math.inf for x, y, h in triples):
         raise traitlets.TraitError(f"spots must be triples (x, y, h) with h > 0, not {spots!r:.80}")
     return triples

@@ -1,5 +1,7 @@
 // The pencil: what the pointer and the keys do on the canvas of the domain playground.
 
+import { track } from "../panel.js";
+
 const WITHIN = 10; // pixels of a corner that a click means
 const TREMBLE = 4; // pixels that a click may move
 
@@ -57,19 +59,18 @@ export class Pencil {
     if (event.button > 1 || this.pressed) return;
     const { board } = this;
     board.root.focus({ preventScroll: true });
-    board.canvas.setPointerCapture(event.pointerId);
-    this.cross = null;
+    Object.assign(this, { cross: null, lifted: false });
     const from = this.view.at(event), i = this.under(from);
-    if (board.brush && !event.button) this.stroke(from);
+    if (board.brush && !event.button) this.stroke(event, from);
     else if (event.shiftKey && i !== null) this.remove(i);
-    else this.follow(from, event.button ? null : i, !event.button);
+    else this.follow(event, from, event.button ? null : i, !event.button);
   }
 
   // Drag the corner, or the view; or, where the pointer did not move, click.
-  follow(from, i, clicks) {
+  follow(event, from, i, clicks) {
     const { board, drawing } = this;
     let [dragged, last] = [false, from];
-    this.track((at) => {
+    this.track(event, (at) => {
       if (!dragged && Math.hypot(at[0] - from[0], at[1] - from[1]) > TREMBLE) {
         dragged = true;
         if (i !== null) drawing.remember();
@@ -84,24 +85,30 @@ export class Pencil {
     }, (at) => !dragged && clicks && this.click(at, i));
   }
 
-  stroke(from) {
-    this.drawing.remember();
-    const add = (at) => this.drawing.addSpot(...this.rounded(this.view.toWorld(...at)), this.board.controls.brushSize) && this.board.changed();
-    add(from);
-    this.track(add, () => this.board.redraw());
+  stroke(event, from) {
+    const dab = (at) => this.dab(this.rounded(this.view.toWorld(...at)));
+    if (this.mayDab()) this.drawing.remember();
+    dab(from);
+    this.track(event, dab, () => this.board.redraw());
   }
 
-  track(move, release) {
-    const { canvas } = this.board, stop = new AbortController(), options = { signal: stop.signal };
+  dab(spot) {
+    if (this.drawing.addSpot(...spot, this.board.controls.brushSize)) this.board.changed();
+  }
+
+  mayDab() {
+    const { isFull, spots } = this.drawing;
+    if (isFull) this.board.say(`no further spots: ${spots.length} are there`);
+    return !isFull;
+  }
+
+  track(event, move, release) {
     this.pressed = true;
-    const letGo = (event, act) => {
-      stop.abort();
+    const end = (act) => (last) => {
       this.pressed = false;
-      act(this.view.at(event));
+      act(this.view.at(last));
     };
-    canvas.addEventListener("pointermove", (event) => move(this.view.at(event)), options);
-    canvas.addEventListener("pointerup", (event) => letGo(event, release), options);
-    canvas.addEventListener("pointercancel", (event) => letGo(event, () => this.board.redraw()), options);
+    track(this.board.canvas, event, (now) => move(this.view.at(now)), end(release), end(() => this.board.redraw()));
   }
 
   hover(event) {
@@ -185,9 +192,8 @@ export class Pencil {
     const at = this.view.toScreen(...this.cross);
     if (this.lifted) return this.putDown();
     if (this.board.brush) {
-      this.drawing.remember();
-      this.drawing.addSpot(...this.cross, this.board.controls.brushSize);
-      return this.board.changed();
+      if (this.mayDab()) this.drawing.remember();
+      return this.dab(this.cross);
     }
     if (this.isAt(at, this.drawing.open.at(-1))) return this.board.closeLoop(); // twice: as a double click
     this.click(at, this.under(at));

@@ -1,9 +1,8 @@
 // Below the domain playground: the player of its steps, and its lines of code.
 
-import { Player } from "./player.js";
-import { make, button } from "./panel.js";
-
-const MOST_ROWS = 9; // of code, to be seen at once
+import { Player } from "../player.js";
+import { make, button } from "../panel.js";
+import { copyLines } from "../kernel.js";
 
 export class Stage {
   constructor(board) {
@@ -38,16 +37,7 @@ export class Stage {
     this.player = null;
   }
 
-  // Put the lines on the clipboard; where that is not allowed they are there to be copied.
   copy(lines) {
-    const byHand = () => {
-      this.code.select();
-      this.board.say("press ctrl-c to copy");
-    };
-    this.code.hidden = false;
-    this.code.value = lines;
-    this.code.rows = Math.min(MOST_ROWS, lines.split("\n").length);
-    if (navigator.clipboard) navigator.clipboard.writeText(lines).then(() => this.board.say("copied: paste it into a cell"), byHand);
-    else byHand();
+    copyLines(lines, this.code, (words) => this.board.say(words));
   }
 }

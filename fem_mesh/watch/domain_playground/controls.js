@@ -1,6 +1,6 @@
 // The sliders and buttons of the domain playground.
 
-import { make, button, toggleFullScreen } from "./panel.js";
+import { make, button, toggleFullScreen } from "../panel.js";
 
 const STEEPEST = 36; // degrees
 const PLACES = 100; // of the sliders of lengths
@@ -12,7 +12,7 @@ export class Controls {
     this.board = board;
     this.sliders = this.buildSliders();
     this.bar = this.buildBar();
-    for (const select of [this.starts, this.encroachment]) // its keys are its own
+    for (const select of [this.starts, this.encroachment]) // its letters are its own
       select.addEventListener("keydown", (event) => event.ctrlKey || event.key === "Escape" || event.stopPropagation());
   }
 
@@ -57,7 +57,7 @@ export class Controls {
     this.brushRow.hidden = true;
     this.encroachment = make("select", { "aria-label": "encroachment", change: () => board.bound({ encroachment: this.encroachment.value }) },
       make("option", { value: "lens" }, "vertex in the lens (Chew)"), make("option", { value: "circle" }, "vertex in the circle (Ruppert)"));
-    return [...rows, make("label", { class: "fem-rule" }, make("span", {}, "encroachment"), this.encroachment)];
+    return [...rows, make("label", {}, make("span", {}, "encroachment"), this.encroachment)];
   }
 
   // ---- buttons -----------------------------------------------------------------------------------
@@ -80,7 +80,6 @@ export class Controls {
     this.brushOn = button("brush: small triangles where you drag", "brush", () => board.toggleBrush(), { key: "b", pressed: false });
     this.clearSpots = button("clear the brush's strokes", "clear strokes", () => board.clearSpots());
     this.play = button("play Ruppert's steps", "play Ruppert's steps", () => board.record(), { key: "p" });
-    this.play.classList.add("fem-play");
     this.copy = button("copy as code", "copy as code", () => board.stage.copy(board.told.code));
     this.help = button("help", "?", () => board.toggleHelp(), { key: "?" });
     return make("div", { class: "fem-bar", role: "toolbar", "aria-label": "drawing" },

@@ -1,18 +1,18 @@
 // The domain playground: an outline to draw, and a mesh that follows. The kernel meshes; this asks and draws.
 
-import { View } from "./view.js";
+import { View } from "../view.js";
 import { Stage } from "./stage.js";
 import { Drawing } from "./drawing.js";
 import { Pencil } from "./pencil.js";
 import { Overlay } from "./overlay.js";
 import { Controls, keysOf } from "./controls.js";
 import { Histogram } from "./histogram.js";
-import { make, disable, listenToKeys, showLegend, watchTheme, watchSize, letZoom, listen, hideStandIn } from "./panel.js";
+import { make, disable, listenToKeys, toggleHelp, showLegend, watchTheme, watchSize, letZoom } from "../panel.js";
+import { bytesOf, listen, send, hideStandIn, NO_ANSWER } from "../kernel.js";
 
 const PATIENCE = 4000; // milliseconds without an answer before a word is said
 const AGAIN = 1500; // milliseconds until a mesh is asked for again that could not be whole yet
 const CATCH_UP = 300; // milliseconds until what another view did is shown here
-const NO_ANSWER = "the kernel does not answer: it is busy, or the cell must be run again";
 const CELLS = 24; // of the grid, at least, across the page
 const PAGE = [0, 6, 0, 4];
 const NOTHING = { x: [], y: [], triangles: [] };
@@ -26,12 +26,12 @@ class DomainPlayground {
     this.view = new View(this.canvas, style, PAGE);
     this.pencil = new Pencil(this);
     this.overlay = new Overlay(this);
-    letZoom(this.view, () => this.redraw(), root, () => false);
+    letZoom(this.view, () => this.redraw(), root, { pans: false });
     this.stops = [
       watchTheme((dark) => this.setDark(dark)), watchSize(this.canvas, () => this.draw()),
       listen(model, "msg:custom", (message, buffers) => this.hear(message, buffers)),
       ...["min_angle", "size", "encroachment", "spots"].map((trait) => listen(model, `change:${trait}`, () => this.adopt())),
-      hideStandIn(model.get("key")),
+      hideStandIn(model.get("key"), root),
     ];
     this.adopt();
     this.send({ type: "hello" });
@@ -49,11 +49,7 @@ class DomainPlayground {
   }
 
   post(message) {
-    try {
-      this.model.send(message);
-    } catch {
-      this.say(NO_ANSWER);
-    }
+    if (!send(this.model, message)) this.say(NO_ANSWER);
   }
 
   ask(start = null) {
@@ -68,7 +64,10 @@ class DomainPlayground {
   }
 
   hear(message, buffers) {
-    if (message.type === "steps") return message.serial === this.me && this.stage.play(message);
+    if (message.type === "steps") {
+      if (message.serial !== this.me) return;
+      return message.refusal ? this.say(message.refusal) : this.stage.play(message);
+    }
     const mine = message.serial === `${this.me} ${this.serial}`;
     if (message.serial && !message.serial.startsWith(this.me)) return this.catchUp(message); // the answer to another view
     if (mine) this.hearAnswer();
@@ -123,8 +122,7 @@ class DomainPlayground {
   }
 
   take({ bounded, min_angle: bound }, buffers) {
-    const [places, triangles, segments, encroached, smallest] = buffers.map(
-      ({ buffer, byteOffset, byteLength }) => buffer.slice(byteOffset, byteOffset + byteLength));
+    const [places, triangles, segments, encroached, smallest] = buffers.map(bytesOf);
     const flat = new Float64Array(places), n = flat.length / 2, angles = new Float32Array(smallest);
     const least = angles.reduce((a, b) => Math.min(a, b), 180);
     const tint = bounded && least < bound ? angles.map((angle) => (angle < bound ? 0.25 + (0.6 * (bound - angle)) / bound : 0)) : null;
@@ -282,8 +280,7 @@ class DomainPlayground {
   }
 
   toggleHelp() {
-    this.help.hidden = !this.help.hidden;
-    this.controls.help.setAttribute("aria-expanded", String(!this.help.hidden));
+    toggleHelp(this.help, this.controls.help);
   }
 
   // ---- building ------------------------------------------------------------------------------------

@@ -135,8 +135,12 @@ export class Drawing {
   // ---- the brush ---------------------------------------------------------------------------------
 
   // Ask for edges of length h around (x, y), unless that is asked for already.
+  get isFull() {
+    return this.spots.length >= MOST_SPOTS;
+  }
+
   addSpot(x, y, h) {
-    if (this.spots.length >= MOST_SPOTS || this.spots.some(([a, b, k]) => Math.hypot(a - x, b - y) < h && k <= h)) return false;
+    if (this.isFull || this.spots.some(([a, b, k]) => Math.hypot(a - x, b - y) < h && k <= h)) return false;
     this.spots = [...this.spots, [x, y, h]];
     return true;
   }

@@ -1,6 +1,6 @@
 // A histogram of angles: bars of five degrees from 0 to 180, and a line at the bound.
 
-import { make } from "./panel.js";
+import { make } from "../panel.js";
 
 const [WIDE, HIGH, FOOT] = [252, 110, 16]; // in units of the picture
 const TOP = 12;
@@ -11,7 +11,7 @@ export class Histogram {
     this.picture = part("svg", { class: "fem-histogram", viewBox: `-12 0 ${WIDE + 26} ${HIGH + FOOT}`, role: "img" });
     this.bars = part("g", {});
     this.line = part("g", { class: "fem-bound" });
-    this.most = part("text", { class: "fem-most", x: WIDE, y: 9, "text-anchor": "end" });
+    this.most = part("text", { x: WIDE, y: 9, "text-anchor": "end" });
     const axis = part("path", { class: "fem-axis", d: `M0 ${HIGH}H${WIDE}` });
     const ticks = TICKS.map((angle) => part("text", { x: this.at(angle), y: HIGH + 12, "text-anchor": "middle" }, `${angle}°`));
     this.picture.append(this.bars, axis, ...ticks, this.line, this.most);
