@@ -23,6 +23,7 @@ FLOORS = [
     "lifetimes",
     "trace",
     "watch",
+    "check",
     "course",
 ]  # from the ground up
 SHOWING = {  # the methods that show or export import what they call inside themselves

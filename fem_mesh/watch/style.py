@@ -50,6 +50,10 @@ ROLES = {
     "curve": Role("its curve", PURPLE, "#F29BC9", width=1.6, dash=(3.0, 1.5)),
     "hole": Role("in a hole", VERMILLION, "#FF8A4C", width=2.6, marker="x", size=9.0),
     "spot": Role("small triangles wanted", PURPLE, "#F29BC9", width=1.3, marker="o", size=7.0),
+    "wrong": Role("wrong", VERMILLION, "#FF8A4C", width=2.0, hatch="///", fill=0.20),
+    "wrong edge": Role("wrong edge", VERMILLION, "#FF8A4C", width=4.4, dash=(1.6, 0.9)),
+    "expected": Role("expected", GREEN, "#2FD1A2", width=2.0, fill=0.22),
+    "expected edge": Role("expected edge", GREEN, "#2FD1A2", width=4.4),
     "region": Role("region", GREEN, "#2FD1A2", width=1.0, marker="D", size=8.0),
 }
 
