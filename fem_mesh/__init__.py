@@ -49,6 +49,7 @@ from fem_mesh.steps import Step
 from fem_mesh.trace import Trace
 
 if TYPE_CHECKING:
+    from fem_mesh import check
     from fem_mesh.watch.domain_playground.widget import DomainPlayground
     from fem_mesh.watch.picture import Picture
     from fem_mesh.watch.player import Player, play
@@ -75,6 +76,7 @@ __all__ = [
     "annulus",
     "any_triangulation",
     "bowyer_watson",
+    "check",
     "constrained_delaunay",
     "cracked_square",
     "delaunay",
@@ -115,6 +117,8 @@ _SHOWN = {  # what draws and plays is imported when it is first needed: Matplotl
 
 
 def __getattr__(name: str) -> Any:
+    if name == "check":
+        return import_module("fem_mesh.check")
     if name in _SHOWN:
         return getattr(import_module(f"fem_mesh.watch.{_SHOWN[name]}"), name)
     raise AttributeError(f"module 'fem_mesh' has no attribute {name!r}")

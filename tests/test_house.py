@@ -24,6 +24,7 @@ FLOORS = [
     "trace",
     "recording",
     "watch",
+    "check",
     "course",
 ]  # from the ground up
 SHOWING = {  # the methods that show or export import what they call inside themselves

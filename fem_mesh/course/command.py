@@ -8,6 +8,7 @@ from pathlib import Path
 import click
 
 from fem_mesh.course import notebooks as lessons
+from fem_mesh.course.homework.command import homework
 from fem_mesh.course.notebooks import NotebookError
 from fem_mesh.steps import many
 
@@ -16,7 +17,10 @@ NOTEBOOKS = click.argument("notebooks", nargs=-1, required=True, type=click.Path
 
 @click.group()
 def main() -> None:
-    """Notebooks of a course: blank copies to type into, and runs as they are kept."""
+    """Notebooks of a course: blank copies to type into, runs as they are kept, homework and its marks."""
+
+
+main.add_command(homework)
 
 
 @main.command()

@@ -50,6 +50,10 @@ ROLES = {
     "curve": Role("its curve", PURPLE, "#F29BC9", width=1.6, dash=(3.0, 1.5)),
     "hole": Role("in a hole", VERMILLION, "#FF8A4C", width=2.6, marker="x", size=9.0),
     "spot": Role("small triangles wanted", PURPLE, "#F29BC9", width=1.3, marker="o", size=7.0),
+    "wrong": Role("wrong", VERMILLION, "#FF8A4C", width=2.0, hatch="///", fill=0.20),
+    "wrong edge": Role("wrong edge", VERMILLION, "#FF8A4C", width=4.4, dash=(1.6, 0.9)),
+    "expected": Role("expected", GREEN, "#2FD1A2", width=2.0, fill=0.22),
+    "expected edge": Role("expected edge", GREEN, "#2FD1A2", width=4.4),
     "region": Role("region", GREEN, "#2FD1A2", width=1.0, marker="D", size=8.0),
 }
 
@@ -59,6 +63,8 @@ KINDS = {  # of steps: the role whose colour a kind wears where all steps are se
     "insert": "new", "flip": "new", "segment": "new", "split": "new", "steiner": "new", "lift": "new", "move": "point",
     "merge": "edge", "reject": "edge", "skip": "edge", "precision": "edge", "budget": "edge",
 }  # fmt: skip
+
+STILL = {"inside", "curve", "hole", "region", "wrong", "wrong edge", "expected", "expected edge"}  # that no widget draws
 
 PAPER = {False: "#FFFFFF", True: "#111318"}
 INK = {False: "#1A1A1A", True: "#EDEDED"}
@@ -81,6 +87,7 @@ def as_table() -> dict[str, Any]:
     roles = {
         name: {f.name: getattr(role, f.name) for f in fields(role) if getattr(role, f.name) != f.default}
         for name, role in ROLES.items()
+        if name not in STILL
     }
     limits = {"views": VIEWS, "numbers": MOST_NUMBERS, "thinnest": THINNEST, "fullSize": FULL_SIZE, "marked": MOST_MARKED}
     return {"roles": roles, "limits": limits, "paper": list(PAPER.values()), "ink": list(INK.values()), "kinds": KINDS}
