@@ -25,11 +25,7 @@ class Lifetimes:
         self._rows, self._width = array(typecode), width
         self._born, self._died, self._keys = array("i"), array("i"), array("i")
         self.alive: dict[Any, int] = {}
-
-    @property
-    def size(self) -> int:
-        """One more than the highest number among the keys (points only)."""
-        return max(self._keys, default=-1) + 1
+        self.size = 0  # one more than the highest number among the keys (points only)
 
     def begin(self, key: Any, row: Any, k: int) -> None:
         """A row comes at step ``k``, under a key that is free."""
@@ -37,7 +33,9 @@ class Lifetimes:
         self._rows.extend(row)
         self._born.append(k)
         self._died.append(NEVER)
-        self._keys.append(key if isinstance(key, int) else 0)
+        number = key if isinstance(key, int) else 0
+        self._keys.append(number)
+        self.size = max(self.size, number + 1)
 
     def end(self, key: Any, k: int) -> bool:
         """The row under a key goes at step ``k``; returns whether there was one."""

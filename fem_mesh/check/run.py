@@ -95,7 +95,7 @@ def run_case(check: str, work: Callable[..., Any], case: dict[str, Any], seconds
         raise
     except OutOfTime as error:
         record.update(error=_said(error, error.args[0] or _place_of_work(work)), stopped="time")
-    except BaseException as error:
+    except BaseException as error:  # whatever a student's code raises, SystemExit too: it is what came of the case
         frames = [*traceback.walk_tb(error.__traceback__)]
         place = recursion_of(frames) if isinstance(error, RecursionError) else None
         record["error"] = _said(error, place or place_of(reversed(frames)) or _place_of_work(work))
@@ -284,7 +284,7 @@ def _said(error: BaseException, place: Place) -> dict[str, Any]:
         return {"type": "OutOfTime", "message": f"{error.args[1]:g} second{'s' * (error.args[1] != 1)}", **place}
     try:
         message = "it calls itself without an end" if isinstance(error, RecursionError) else str(error)
-    except Exception:
+    except Exception:  # an exception of a student's own, whose words cannot be had
         message = ""
     message = re.sub(r"0x[0-9a-fA-F]+", "0x...", " ".join(message.split()))[:LONGEST]
     return {"type": type(error).__name__, "message": message, **place}

@@ -13,14 +13,14 @@ if TYPE_CHECKING:
 Picture = dict[str, Any]
 
 
-class CheckFailed(AssertionError):  # noqa: N818
+class CheckFailed(AssertionError):  # noqa: N818 - a student reads it
     """Raised by a check that found something wrong; the message says what. A notebook shows no traceback of it."""
 
     def _render_traceback_(self) -> list[str]:
         return [f"CheckFailed: {self}"]
 
 
-class Wrong(Exception):  # noqa: N818
+class Wrong(Exception):  # noqa: N818 - no error of ours
     """What is wrong, found by a judge: a sentence, the step (from 1) and what to draw (see ``drawing``)."""
 
     def __init__(self, message: str, picture: Picture | None = None, step: int | None = None) -> None:

@@ -172,7 +172,7 @@ for pid in (os.getppid(), -1, 1):
 """, KEPT),
     "forges a report": (WRONG + """
 import glob, json, os
-for folder in ('/tmp', '/work', os.path.expanduser('~'), '/proc/1/cwd', '/proc/1/root/tmp', {outside!r}, *glob.glob('/tmp/*')):
+for folder in ('/tmp', os.getcwd(), os.path.expanduser('~'), '/proc/1/cwd', {outside!r}, *glob.glob('/tmp/*')):
     for name in ('result.json', 'grades.csv', 'report.xml', 'ada.json'):
         try: open(os.path.join(folder, name), 'w').write('1000')
         except OSError: pass
@@ -258,7 +258,8 @@ show('x' * 200_000_000)
 """, None),
     "fills the disk": (WRONG + """
 import glob, os
-for folder in ('/tmp', '/work', '/dev/shm', *glob.glob('/tmp/*/io'), *glob.glob('/root/**/io', recursive=True)):
+sockets = [*glob.glob('/tmp/*/io'), *glob.glob(os.path.expanduser('~/**/io'), recursive=True)]
+for folder in ('/tmp', os.getcwd(), '/dev/shm', *sockets):
     try:
         for k in range(100): open(os.path.join(folder, str(k)), 'wb').write(bytes(200 << 20))
     except OSError: pass
@@ -266,10 +267,11 @@ import time; time.sleep(1)
 """, None),
     "network": (WRONG + """
 import socket, urllib.request
-for host, port in (('127.0.0.1', {port}), ('localhost', {port}), ('10.0.0.1', 80), ('169.254.169.254', 80), ('pypi.org', 443)):
+hosts = [('127.0.0.1', {port}), ('localhost', {port}), ('10.0.0.1', 80), ('169.254.169.254', 80), ('example.org', 443)]
+for host, port in hosts:
     try: socket.create_connection((host, port), 1).send(b'hello')
     except OSError: pass
-try: open('/work/x').read()
+try: open('x').read()
 except OSError: pass
 """, KEPT),
     "garbage on the wire": (WRONG + """

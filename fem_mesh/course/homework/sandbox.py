@@ -18,7 +18,7 @@ from fem_mesh.course.homework.packages import Place, place_of
 
 MODES = ("auto", "required", "off")
 USER = "65534"
-WORK = "/work"
+WORK = "/desk"
 # Jupyter's JPY_PARENT_PID is a number of the world outside: a kernel would look for it in its own, and end.
 _KERNELS_OWN = ("--unsetenv", "JPY_PARENT_PID", "--chdir", WORK)
 
