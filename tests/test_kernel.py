@@ -123,7 +123,7 @@ def run(code, tmp_path, **environment):
     script = tmp_path / "script.py"
     script.write_text(textwrap.dedent(code))
     done = subprocess.run(
-        [sys.executable, "-W", "error", script], capture_output=True, text=True, timeout=300, env=os.environ | environment
+        [sys.executable, "-W", "error", script], capture_output=True, text=True, timeout=900, env=os.environ | environment
     )
     assert done.returncode == 0, done.stderr
     return done.stdout.strip()

@@ -11,6 +11,7 @@ from fem_mesh.check.cases_domains import of_carve, of_encroached, of_ruppert, of
 from fem_mesh.check.cases_meshes import of_bowyer_watson, of_lawson
 from fem_mesh.check.cases_pieces import of_cavity, of_flip
 from fem_mesh.check.cases_predicates import of_in_circle, of_orient
+from fem_mesh.check.disguise import disguised
 from fem_mesh.errors import MeshError
 
 Case = dict[str, Any]
@@ -29,7 +30,7 @@ MAKERS: dict[str, Callable[[np.random.Generator], list[Case]]] = {
 
 
 def cases_of(check: str, seed: int = 0) -> list[Case]:
-    """The cases of a check; another ``seed`` gives other random ones, and the same nasty ones.
+    """The cases of a check; another ``seed`` gives other random ones, and the same nasty ones in disguise.
 
     A case is a dict with a ``name`` and what the student's work is called with: ``calls``, each a list of points, or
     ``points``, ``triangles``, ``segments``, ``min_angle``. Raises MeshError for a check that does not exist.
@@ -39,4 +40,6 @@ def cases_of(check: str, seed: int = 0) -> list[Case]:
     """
     if check not in MAKERS:
         raise MeshError(f"there are no cases for a check {check!r}: there are {', '.join(MAKERS)}")
-    return MAKERS[check](np.random.default_rng(seed))
+    random = np.random.default_rng(seed)
+    cases = MAKERS[check](random)
+    return [disguised(check, case, random) for case in cases] if seed else cases

@@ -41,9 +41,19 @@ def of_segments(random: np.random.Generator) -> list[Case]:
             [*((x, 0) for x in range(8)), (-1, 2.0**-20), (8, 2.0**-20), (3, 4), (3, -4)],
             [(8, 9)],
         ),
+        *(
+            _forced(f"one flip makes the next edge illegal, cloud {k}", [(-0.25, 0.5), (1.25, 0.5), *cloud], [(0, 1)])
+            for k, cloud in enumerate(map(_around_a_segment, (9, 42, 48, 84, 101)), start=1)
+        ),
         _forced("tiny and crowded", few * 2.0**-40, apart(few, random, 9)),
         _forced("many random segments", many, apart(many, random, 20)),
     ]
+
+
+def _around_a_segment(seed: int) -> np.ndarray:
+    """Of those who look at each edge only once, each of these (found by search) catches two of three, by their order."""
+    cloud = np.random.default_rng(seed).random((28, 2)) * [1, 0.5] + [0, 0.25]
+    return np.round(cloud * 256) / 256 + [0, 2.0**-10]  # beside the segment at 0.5
 
 
 def _forced(name: str, points: Any, segments: Any) -> Case:
@@ -133,16 +143,17 @@ def of_encroached(random: np.random.Generator) -> list[Case]:
 
 
 def of_ruppert(random: np.random.Generator) -> list[Case]:
-    inner = [(4, 4), (6, 4), (6, 6), (4, 6)]
+    inner, slot = box(4, 4, 6, 6), box(2, 7, 14, 9)
     spots = np.unique(random.integers(2, 15, (6, 2)), axis=0)
     return [
         _refined("a square, with nothing to do", SQUARE, ring(0, 4)),
         _refined("a point near a side", [*SQUARE, (2, 0.5)], ring(0, 4)),
         _refined("a rectangle, long and low", box(0, 0, 8, 1), ring(0, 4)),
         _refined("an L-shape", [(0, 0), (8, 0), (8, 1), (3, 1), (3, 8), (0, 8)], ring(0, 6)),
-        _refined("two points close together", [*box(0, 0, 8, 8), (4, 4), (4.5, 4)], ring(0, 4)),
+        _refined("two points close together", [*box(0, 0, 8, 8), (4, 4), (4.5, 4)], ring(0, 4), min_angle=16),
         _refined("a square with a hole", [*box(0, 0, 16, 16), *inner], ring(0, 4) + ring(4, 4)),
-        _refined("random points in a square", [*box(0, 0, 16, 16), *spots], ring(0, 4)),
+        _refined("a side that is no edge at first", [*box(0, 0, 16, 16), *slot, (8, 6)], ring(0, 4) + ring(4, 4)),
+        _refined("random points in a square", [*box(0, 0, 16, 16), *spots], ring(0, 4), min_angle=24),
     ]
 
 
@@ -155,5 +166,5 @@ def _between(name: str, points: Any, segments: Any) -> Case:
     return {"name": name, "points": as_lists(points, float), "segments": as_lists(segments, int)}
 
 
-def _refined(name: str, points: Any, segments: Any) -> Case:
-    return {**_between(name, points, segments), "min_angle": 20.0, "steps": 300}
+def _refined(name: str, points: Any, segments: Any, min_angle: float = 20) -> Case:
+    return {**_between(name, points, segments), "min_angle": float(min_angle), "steps": 100}

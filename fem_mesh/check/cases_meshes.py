@@ -51,7 +51,7 @@ def of_bowyer_watson(random: np.random.Generator) -> list[Case]:
         _points("the first points on a line", [(0, 0), (2, 2), (1, 1), (3, 3), (2, 0), (0, 2)]),
         _points("points on a grid", grid_points(4)[random.permutation(16)]),
         _points("points on a circle, and its centre", [*CIRCLE, (0, 0)]),
-        _points("a flat hull: the circles there are huge", [(0, 0), (10, 0), (5, 2.0**-12), (5, -4), (2, -1), (8, -1)]),
+        _points("a flat hull: the circles there are huge", [(0, 0), (10, 0), (5, 2.0**-40), (5, -4), (2, -1), (8, -1)]),
         _points("points farther and farther out", outward),
         _points("points on a line", [(0, 0), (1, 2), (2, 4), (-1, -2)]),
         _points("a regular polygon, rounded", ring_points(16)[random.permutation(16)]),

@@ -9,6 +9,16 @@ import numpy as np
 from fem_mesh.predicates import orient
 
 Case = dict[str, Any]
+NEARLY_ON_A_LINE = [  # found by search: an error bound of differences, |uv - wz| for |uv| + |wz|, calls rounded signs sure
+    [(0.811050104132898, 0.5000885385292291), (0.5370148697599578, 0.39869550181124125),
+     (0.6431153728232669, 0.4379526879446656), (0.20084574293745117, 0.2743129248869138)],
+    [(0.8529817375421727, 0.5156032428906021), (0.15115606205300436, 0.2559277429596134),
+     (0.8496749680795893, 0.5143797381894463), (0.5005708048115801, 0.3852111977802838)],
+    [(0.11779172362964596, 0.24358293774296902), (0.383094073137043, 0.3417448070607059),
+     (0.3001094720297449, 0.31104050465100563), (0.925549896270423, 0.5424534616200565)],
+    [(0.4447256692416872, 0.3645484976194252), (0.9317691508266195, 0.5447545858058501),
+     (0.8382266226777717, 0.5101438503907765), (0.30840688593916854, 0.31411054779749326)],
+]  # fmt: skip
 
 
 def of_orient(random: np.random.Generator) -> list[Case]:
@@ -63,6 +73,7 @@ def of_in_circle(random: np.random.Generator) -> list[Case]:
         _calls("a tiny triangle", anywhere[:6] * 2.0**-30),
         _calls("a hair inside, a hair outside", hairs),
         _calls("rectangles, or but for a hair", [*_rectangles(np.random.default_rng(1)), *_rectangles(random)]),
+        _calls("points nearly on a line", NEARLY_ON_A_LINE),
     ]
 
 

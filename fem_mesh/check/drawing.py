@@ -112,6 +112,7 @@ def layers_of_panel(panel: dict[str, Any], points: np.ndarray) -> list[Layer]:
         Layer("wrong", "polygons", at("wrong", 3)),
         Layer("expected", "polygons", at("right", 3)),
         Layer("segment", "lines", at("segments", 2), scale=0.8),
+        Layer("edge", "lines", at("edges", 2)),
         Layer("wrong edge", "lines", at("wrong_edges", 2)),
         Layer("expected edge", "lines", at("right_edges", 2)),
         Layer("circle", "circles", circles[circles[:, 2] < math.inf]),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -69,8 +70,7 @@ def find_first(check: str, transcript: Any, cases: Sequence[Case]) -> Verdict:
         except Wrong as wrong:
             message = NO_XML.sub("", wrong.message)  # so that it can stand on any page
             return Verdict(check, False, message, case["name"], wrong.step, k, len(cases), wrong.picture)
-    number = "its case" if len(cases) == 1 else f"all {len(cases)} cases"
-    return Verdict(check, True, f"right on {number}", passed=len(cases), total=len(cases))
+    return Verdict.of_all(check, len(cases))
 
 
 @dataclass(frozen=True)
@@ -83,12 +83,19 @@ class Run:
     returned: Any
     error: dict[str, Any] | None
     stopped: str | None
+    points: Any = None
+
+    def numbered(self, message: str) -> str:
+        """What an exception says of points, by their numbers where they are the case's."""
+        for v, (x, y) in enumerate(self.points or ()):
+            message = message.replace(f"({x}, {y})", f"point {v}")
+        return re.sub(r"point (\d+), point (\d+), point (\d+)", r"points \1, \2, \3", message)
 
     def finish(self, calls: int | None = None) -> None:
         """Raise Wrong if it did not end by itself, or did not answer so many calls; judged after all that was yielded."""
         if self.error is not None:
             step = len(self.yields) + 1 if self.kind == "generator" else None
-            raise Wrong(say_error(self.check, self.error), step=step)
+            raise Wrong(self.numbered(say_error(self.check, self.error)), step=step)
         if self.stopped is not None:
             raise Wrong(f"it has not ended after {len(self.yields)} steps, more than it can need: when does its loop end?")
         if calls is not None and len(self.yields) != calls:
@@ -114,7 +121,7 @@ def read_run(check: str, case: Case, record: Any) -> Run:
     most = len(case["calls"]) if "calls" in case else case.get("steps", STEPS)
     if len(yields) > most:
         yields, stopped = yields[:most], "steps"
-    return Run(check, str(record.get("kind")), yields, record.get("returned"), error, stopped)
+    return Run(check, str(record.get("kind")), yields, record.get("returned"), error, stopped, case.get("points"))
 
 
 def say_error(check: str, error: dict[str, Any]) -> str:

@@ -21,17 +21,19 @@ def panel(
     right: Rows = (),
     wrong_edges: Rows = (),
     right_edges: Rows = (),
+    edges: Rows = (),
     segments: Rows = (),
     circles: Rows = (),
     diametral: Rows = (),
     point: Iterable[int] = (),
     words: Sequence[str] = (),
 ) -> dict[str, Any]:
-    """One panel: rows of point numbers. ``circles`` are circumcircles of triangles, ``diametral`` those over edges,
-    ``point`` wears a ring, ``words`` stand for the points' numbers, ``points`` are its own ones."""
+    """One panel: rows of point numbers. ``edges`` are those that the title speaks of, ``circles`` are circumcircles of
+    triangles, ``diametral`` those over edges, ``point`` wears a ring, ``words`` stand for the points' numbers,
+    ``points`` are its own ones."""
     rows = {
         "triangles": triangles, "wrong": wrong, "right": right, "wrong_edges": wrong_edges, "right_edges": right_edges,
-        "segments": segments, "circles": circles, "diametral": diametral,
+        "edges": edges, "segments": segments, "circles": circles, "diametral": diametral,
     }  # fmt: skip
     shown: dict[str, Any] = {name: sorted([int(v) for v in row] for row in given) for name, given in rows.items()}
     shown.update(title=title, point=[int(v) for v in point], words=list(words))

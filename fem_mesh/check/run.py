@@ -31,6 +31,7 @@ STEPS = 1000  # that a generator may yield in one case, unless the case says
 ITEMS = 400_000  # numbers and rows that one case may write down
 DEEPEST = 6
 LONGEST = 200  # characters of a text
+MESSAGE = 300  # characters of what an exception says
 LARGEST = 2**63  # beyond, an integer is written as its sign
 
 ARGUMENTS = {  # what a student's work is called with; a case of the predicates lists its calls instead
@@ -183,11 +184,15 @@ def _plain_number(value: Any) -> Any:
     if isinstance(value, numbers.Integral) and abs(int(value)) <= LARGEST:
         return int(value)
     if isinstance(value, float):
-        return float(value) if math.isfinite(value) else {"type": "float", "text": str(float(value))}
+        return float(value) if math.isfinite(value) else {"type": "float", "text": str(float(value)), **_sign(value)}
     with contextlib.suppress(OverflowError, ValueError):
         if float(value) == value:
             return float(value)
-    return {"type": type(value).__name__, "sign": int(value > 0) - int(value < 0)}
+    return {"type": type(value).__name__, **_sign(value)}
+
+
+def _sign(value: Any) -> dict[str, int]:
+    return {"sign": int(value > 0) - int(value < 0)} if value == value else {}
 
 
 def _sorted(items: list[Any]) -> list[Any]:
@@ -225,7 +230,8 @@ def time_limit(seconds: float) -> Iterator[None]:
 
 
 HERE = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
-LIBRARIES = (HERE, *(sysconfig.get_path(name) for name in ("stdlib", "platstdlib", "purelib", "platlib")), "<frozen")
+GATE = os.path.join(os.path.dirname(HERE), "start.py")  # what refuses imports in a grading kernel
+LIBRARIES = (HERE, GATE, *(sysconfig.get_path(name) for name in ("stdlib", "platstdlib", "purelib", "platlib")), "<frozen")
 
 
 Frames = Iterable[tuple[types.FrameType, int | None]]
@@ -286,5 +292,5 @@ def _said(error: BaseException, place: Place) -> dict[str, Any]:
         message = "it calls itself without an end" if isinstance(error, RecursionError) else str(error)
     except Exception:  # an exception of a student's own, whose words cannot be had
         message = ""
-    message = re.sub(r"0x[0-9a-fA-F]+", "0x...", " ".join(message.split()))[:LONGEST]
+    message = re.sub(r"0x[0-9a-fA-F]+", "0x...", " ".join(message.split()))[:MESSAGE]
     return {"type": type(error).__name__, "message": message, **place}

@@ -27,6 +27,11 @@ def orient_in_integers(a, b, c):
     return (ax - cx) * (by - cy) - (ay - cy) * (bx - cx)
 
 
+def orient_as_infinities(a, b, c):
+    turn = orient_in_fractions(a, b, c)
+    return float("inf") if turn > 0 else -float("inf") if turn < 0 else 0.0
+
+
 def in_circle_in_fractions(a, b, c, d):
     rows = []
     for p in (a, b, c):
@@ -128,6 +133,14 @@ def lawson_with_steps(points, triangles):
         yield fm.Step("flip", points=points, triangles=state)
         last = state
     return last if "last" in locals() else triangles
+
+
+def lawson_that_returns_its_flips(points, triangles):
+    flips = []
+    for state in lawson_with_lists(points, triangles):
+        yield state
+        flips.append((0, 1))
+    return flips
 
 
 def flip_with_lists(points, triangles, edge):
@@ -478,11 +491,18 @@ def ruppert_with_steps(points, segments, min_angle):
 
 
 RIGHT = {
-    "orient": [fm.orient, orient_in_fractions, orient_as_sign, orient_in_integers],
+    "orient": [fm.orient, orient_in_fractions, orient_as_infinities, orient_as_sign, orient_in_integers],
     "in_circle": [fm.in_circle, in_circle_in_fractions, in_circle_as_numpy, in_circle_by_centre],
     "flip": [flip_with_lists, flip_with_sets, flip_in_an_array],
     "cavity": [cavity_with_lists, cavity_with_sets, cavity_as_array],
-    "lawson": [lawson_with_lists, lawson_backwards, lawson_with_sets, lawson_recursive, lawson_with_steps],
+    "lawson": [
+        lawson_with_lists,
+        lawson_backwards,
+        lawson_with_sets,
+        lawson_recursive,
+        lawson_with_steps,
+        lawson_that_returns_its_flips,
+    ],
     "bowyer_watson": [bowyer_watson_with_ghosts, bowyer_watson_super_triangle, bowyer_watson_by_recursion],
     "segments": [segments_by_flips, segments_at_once, segments_by_holes],
     "carve": [carve_by_rays, carve_by_flood, carve_as_a_set],

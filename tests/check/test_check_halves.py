@@ -22,7 +22,7 @@ import fem_mesh as fm
 from fem_mesh import check
 from fem_mesh.check import cases_of
 from fem_mesh.check.judge import JUDGES, find_first
-from fem_mesh.check.run import STEPS, place_of, plain, run
+from fem_mesh.check.run import GATE, STEPS, place_of, plain, run
 from fem_mesh.domain.domain import Domain
 
 CASE = {"name": "one", "points": [[0.0, 0.0], [4.0, 0.0], [5.0, 3.0], [1.0, 2.0]], "triangles": [[0, 1, 2], [0, 2, 3]]}
@@ -32,13 +32,13 @@ CASE = {"name": "one", "points": [[0.0, 0.0], [4.0, 0.0], [5.0, 3.0], [1.0, 2.0]
 
 
 @pytest.mark.parametrize("name", sorted(set(JUDGES) - {"mesh"}))
-def test_cases_are_json_and_half_of_them_fixed(name):
+def test_cases_are_json_and_none_is_the_same_for_another_seed(name):
     some, other = cases_of(name, 1), cases_of(name, 2)
     assert json.loads(json.dumps(some, allow_nan=False)) == some
     assert some == cases_of(name, 1)
     assert some != other
     assert [case["name"] for case in some] == [case["name"] for case in other]
-    assert sum(a == b for a, b in zip(some, other, strict=True)) >= 1
+    assert not [a["name"] for a, b in zip(some, other, strict=True) if a == b]
 
 
 @pytest.mark.parametrize("name", ["segments", "carve", "encroached", "ruppert"])
@@ -122,7 +122,7 @@ def test_who_changes_what_was_given_changes_nothing_else():
         ({1: 2}.values(), [2]),
         ({1, "a"}, [1, "a"] if repr(1) < repr("a") else ["a", 1]),
         (math.nan, {"type": "float", "text": "nan"}),
-        (-math.inf, {"type": "float", "text": "-inf"}),
+        (-math.inf, {"type": "float", "text": "-inf", "sign": -1}),
         (Fraction(1, 2), 0.5),
         (Fraction(-1, 3), {"type": "Fraction", "sign": -1}),
         (Decimal("0.1"), {"type": "Decimal", "sign": 1}),
@@ -137,7 +137,8 @@ def test_who_changes_what_was_given_changes_nothing_else():
         (None, None),
         (fm.Step("flip", points=[(0, 1)], triangles=np.eye(1)), {"type": "Step", "points": [[0, 1]], "triangles": [[1.0]]}),
     ],
-    ids=lambda value: re.sub(r" at 0x.*", "", repr(value)[:60])[:30],
+    # The same in every process: a set is written in an order of its own in each.
+    ids=lambda value: f"set of {len(value)}" if isinstance(value, set) else re.sub(r" at 0x.*", "", repr(value)[:60])[:30],
 )  # fmt: skip
 def test_what_is_no_json_is_told(value, written):
     assert plain(value) == written
@@ -259,6 +260,17 @@ def test_the_line_is_theirs_even_where_a_library_raises():
     (record,) = run("orient", work, cases_of("orient"))["runs"]
     assert record["error"]["source"] == "return np.linalg.inv(np.zeros((2, 2)))"
     assert record["error"]["type"] == "LinAlgError"
+
+
+def test_the_line_is_theirs_where_a_grading_kernel_refuses_an_import():
+    gate = {}
+    exec(compile("def refuse():\n    raise ImportError('not here')", GATE, "exec"), gate)
+
+    def work(a, b, c):
+        return gate["refuse"]()
+
+    (record,) = run("orient", work, cases_of("orient"))["runs"]
+    assert record["error"]["source"] == 'return gate["refuse"]()'
 
 
 # ---- judging -----------------------------------------------------------------------------------------

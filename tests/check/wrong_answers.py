@@ -407,6 +407,12 @@ def one_yield_too_many(points):
     yield [(0, 1, 2)]
 
 
+@wrong("bowyer_watson", "step 3: there are 4 states of 3 points: yield once after each point, not before")
+def one_yield_before_the_first(points):
+    yield []
+    yield from bowyer_watson_with_ghosts(points)
+
+
 @wrong("bowyer_watson", "step 3: triangle (...) is there twice")
 def duplicates(points):
     for state in bowyer_watson_with_ghosts(points):
@@ -449,7 +455,10 @@ def gives_up_where_it_is_not_convex(points, triangles, segments):
                 yield triangles
 
 
-@wrong("segments", "step 2: ... overlap|is flat|cross or touch")
+@wrong(
+    "segments",
+    "you flipped edge 8-9, but its quadrilateral 8, 10, 9, 6 is not strictly convex: leave this edge, and try it again",
+)
 def flips_what_is_not_convex(points, triangles, segments):
     for a, b in segments:
         for u, v in [e for e in apexes(triangles) if e[0] < e[1] and crosses(points, a, b, *e)]:
@@ -593,6 +602,9 @@ wrong("encroached", "a list that holds (0, 1, 4), which is no segment (a, b)")(
     lambda p, s: [(*e, 4) for e in encroached_with_lists(p, s)]
 )
 wrong("encroached", "(0, 3) is none of the segments|(0, 2) is none of the segments")(lambda p, s: [(0, 2)])
+wrong("encroached", "segment ... is there more than once: one point inside is enough")(
+    lambda p, s: [e for e in s for v in p if fm.in_diametral_circle(p[e[0]], p[e[1]], v)]
+)
 wrong("encroached", "you returned True, not the list of all segments")(lambda p, s: True)
 wrong("encroached", "a point on a circle but for a hair: ...lies inside the circle over segment 0-1, but you left it out")(
     lambda p, s: diametral(p, s, lambda dot, square: dot < -1e-12 * max(square, 1e-20))
@@ -787,7 +799,7 @@ wrong_mesh(
     domain=ELL,
 )
 wrong_mesh("of the convex hull is missing", FINE.points, FINE.triangles)
-wrong_mesh("the triangles cover an area of", FINE.points, FINE.triangles[1:], domain=ELL, delaunay=False)
+wrong_mesh("one side of edge", FINE.points, FINE.triangles[1:], domain=ELL, delaunay=False)
 wrong_mesh("an end of the domain's segment from (...) to (...) is no vertex", KITE, [(0, 1, 3), (1, 2, 3)], domain=fm.square())
 wrong_mesh(
     "the domain's segment from (0, 0) to (5, 3) is no chain of edges: 0-2 is missing", KITE, [(0, 1, 3), (1, 2, 3)],

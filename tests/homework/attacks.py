@@ -232,6 +232,12 @@ for _ in range(30):
         x = bytearray(600 << 20); time.sleep(60)
 time.sleep(30)
 """, LOST),
+    "memory without a name": (WRONG + """
+import os, time
+held = [os.memfd_create('x') for _ in range(30)]
+for fd in held: os.posix_fallocate(fd, 0, 60 << 20)
+time.sleep(3.5)
+""", LOST),
     "fork bomb": (WRONG + """
 import os
 while True:
@@ -318,8 +324,9 @@ def orient(a, b, c):
 }  # fmt: skip
 
 SLOW = {  # those that take long, or are much like others: graded with -m exhaustive
-    "50 GB in children", "a daemon", "a shell", "answers only the easy case", "asks the instructor", "cleared", "ctypes",
-    "deep answer", "endless function", "endless function that catches all", "fills the disk", "floods", "lifts its limits",
-    "one giant message", "patches run", "qhull", "qhull by file", "real answer in the answer cell", "retyped check",
-    "saved outputs", "scipy by path", "segfault", "shuts itself down", "sleeps for ever in C", "strange answers",
+    "50 GB in children", "a daemon", "a shell", "answers only the easy case", "asks the instructor", "cleared",
+    "ctypes", "deep answer", "endless function", "endless function that catches all", "fills the disk", "floods",
+    "lifts its limits", "memory without a name", "one giant message", "patches run", "qhull", "qhull by file",
+    "ready-made sign", "real answer in the answer cell", "retyped check", "saved outputs", "scipy by path", "segfault",
+    "shuts itself down", "sleeps for ever in C", "strange answers",
 }  # fmt: skip

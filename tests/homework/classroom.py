@@ -83,9 +83,11 @@ class Class:
             path.write_text(json.dumps(notebook or self.notebook()), encoding="utf-8")  # as it is: nbformat would repair it
         return path
 
-    def grade(self, *options):
+    def grade(self, *options, own=False):
+        """Grade the class; the instructor's ``own`` solution first only where that is what is tested."""
         table = ("--csv", self.folder / "grades.csv", "--feedback", self.folder / "out")
-        return call("homework", "grade", self.source, self.submissions, *table, "--jobs", 2, *options)
+        force = () if own else ("--force",)
+        return call("homework", "grade", self.source, self.submissions, *table, "--jobs", 2, *force, *options)
 
     def results(self):
         """What is kept of each student."""

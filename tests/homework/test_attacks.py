@@ -4,10 +4,14 @@ Where bubblewrap is not installed, those that need it are skipped, for there the
 """
 
 import json
+import os
 import shutil
 import socket
+import subprocess
+import sys
 import tempfile
 import textwrap
+import time
 from pathlib import Path
 
 import nbformat
@@ -54,6 +58,7 @@ def attacked(request, tmp_path_factory, listener):
         for word, value in words.items():
             code = code.replace("{" + word + "!r}", repr(value)).replace("{" + word + "}", str(value))
         course.submit(name, course.notebook(orient=code))
+    course.submit("half a character", half_a_character(course))
     for name, body in only(MESHERS | LEFT_OVER, out):
         notebook = course.notebook(orient=None, circle=None)
         cell(notebook, "a-mesh").source = mesher(body, here=words["here"], packages=str(Path(np.__file__).parents[1]))
@@ -75,6 +80,14 @@ def attacked(request, tmp_path_factory, listener):
     assert before == {path: path.read_bytes() for path in sorted(course.submissions.rglob("*")) if path.is_file()}
     yield course
     shutil.rmtree(course.rooms)
+
+
+def half_a_character(course):
+    """Right, with halves of characters wherever a student can write them, and turns of the direction of text."""
+    notebook = course.notebook(orient=f"{ORIENT}\nhalf = '\ud800'\nclass \u0431(Exception): pass")
+    cell(notebook, "a-circle").source = "def in_circle(*points):\n    raise ValueError(chr(0xD800) + chr(0x202E) + chr(27))"
+    cell(notebook, "explain").source = "\ud800 and \u202e"
+    return notebook
 
 
 def remembered():
@@ -127,6 +140,13 @@ def _richer(notebook):
     notebook.metadata["kernelspec"] = {"name": "evil", "display_name": "x", "language": "bash"}
 
 
+def _imports_more(notebook):
+    cell(
+        notebook, "imports"
+    ).source = "import sys\nfrom fem_mesh.predicates import orient\nimport fem_mesh as fm\nfm.check.orient = lambda f: f(0)"
+    cell(notebook, "a-orient").source = "# is imported"
+
+
 def _with_outputs(notebook):
     check = cell(notebook, "c-orient")
     check.outputs = [
@@ -136,7 +156,7 @@ def _with_outputs(notebook):
 
 SHAPES = {
     "skip tags": _skip_tags, "cleared": _cleared, "no checks": _without_checks, "easier check": _easier_check,
-    "retyped check": _retyped_check, "richer": _richer, "saved outputs": _with_outputs,
+    "retyped check": _retyped_check, "richer": _richer, "saved outputs": _with_outputs, "imports more": _imports_more,
 }  # fmt: skip
 
 
@@ -194,6 +214,15 @@ def test_none_stops_the_run_and_honest_work_counts(attacked):
 
 
 @NEEDS
+def test_half_a_character_stops_no_page(attacked):
+    assert attacked.scores()["half a character"] == [2, 0, None, 0]
+    text = (attacked.folder / "out" / "half a character.html").read_text()
+    assert "ValueError" in text
+    assert not {*"\u202e\x1b"} & {*text}
+    assert len(list((attacked.folder / "out").iterdir())) == len(attacked.scores())
+
+
+@NEEDS
 def test_none_reaches_the_network_or_leaves_its_folder(attacked, listener):
     with pytest.raises(TimeoutError):
         listener.accept()
@@ -214,6 +243,28 @@ def test_each_ends_at_the_cells_limit(attacked):
 
 
 @NEEDS
+@pytest.mark.exhaustive
+def test_where_the_grader_is_killed_all_ends_and_goes(tmp_path):
+    course = Class(tmp_path)
+    course.submit("ada", course.notebook(orient="while True: pass"))
+    rooms = Path(tempfile.mkdtemp(prefix="t-"))
+    command = [sys.executable, "-c", "from fem_mesh.course.command import main; main()", "homework", "grade", course.source]
+    command += [course.submissions, "--csv", tmp_path / "g.csv", "--force"]
+    with subprocess.Popen([str(part) for part in command], env={**os.environ, "TMPDIR": str(rooms)}) as process:
+        while not list(rooms.glob("fm-*/home")):
+            time.sleep(0.1)
+        time.sleep(2)
+        process.kill()
+    until = time.monotonic() + 30
+    while time.monotonic() < until and any(rooms.iterdir()):
+        time.sleep(0.1)
+    assert list(rooms.iterdir()) == []
+    commands = [" ".join(process.info["cmdline"] or ()) for process in psutil.process_iter(["cmdline"])]
+    assert [command for command in commands if str(rooms) in command] == []
+    rooms.rmdir()
+
+
+@NEEDS
 def test_feedback_escapes_what_students_say(attacked):
     page = (attacked.folder / "out" / "speaks HTML.html").read_text()
     assert "<script" not in page
@@ -228,4 +279,7 @@ def test_without_a_sandbox_the_verdict_still_stands_outside(tmp_path):
     course.submit("honest", course.notebook(circle=IN_CIRCLE))
     result = course.grade("--sandbox", "off", "--cell-time", 6)
     assert "runs without a sandbox, for it was switched off" in result.output
+    assert "and import a solver" in result.output
+    assert "graded without a sandbox: 4 submissions" in result.output
+    assert (course.folder / "grades.csv").read_text().count("graded without a sandbox") == 4
     assert {name: scores[0] for name, scores in course.scores().items()} == dict.fromkeys(WITHOUT_BOX, 0) | {"honest": 2}

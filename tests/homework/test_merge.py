@@ -100,7 +100,7 @@ def checks_changed(notebook):
         (replaced, "orient was not found; your cell at its position was run"),
         (shuffled, ""),
         (checks_gone, ""),
-        (checks_changed, "check-orient is not yours to change"),
+        (checks_changed, "the cell check-orient is not yours to change"),
     ],
 )
 def test_what_becomes_of_cells_does_not_change_what_is_run(change, told):
@@ -139,6 +139,85 @@ def test_cells_of_ones_own_run_where_they_stand_and_never_count_as_checks():
     assert merged.cells[0] == ("import math", -1)
     assert merged.cells[-1] == ("fm.check.orient(orient)  # mine", -1)
     assert merged.added == ["import math", "fm.check.orient(orient)  # mine"]
+
+
+def imported(notebook):
+    cell(notebook, "imports").source = "import math\nimport fem_mesh as fm\nfrom itertools import combinations as c\n"
+
+
+def imported_and_changed(notebook):
+    imported(notebook)
+    cell(notebook, "imports").source += "def helper(x):\n    import os\n    return x\nfm.check.orient = print\nif 1: import sys"
+
+
+def imported_into_a_check(notebook):
+    cell(notebook, "c-orient").source = "import math\nfm.check.orient(orient)"
+
+
+def no_python(notebook):
+    cell(notebook, "imports").source = "import math\n%matplotlib inline"
+
+
+ADDED = "import math\nfrom itertools import combinations as c"
+
+
+@pytest.mark.parametrize(
+    ("change", "added", "told"),
+    [
+        (imported, [ADDED], []),
+        (imported_and_changed, [ADDED], ["the cell imports is not yours to change: it was run as it was handed out, and after "
+                                         "it the imports that you added"]),
+        (imported_into_a_check, [], ["the cell check-orient is not yours to change: it was run as it was handed out"]),
+        (no_python, [], ["the cell imports is not yours to change: it was run as it was handed out"]),
+    ],
+)  # fmt: skip
+def test_imports_that_were_added_to_a_given_cell_run_after_it_and_nothing_else_of_it(change, added, told):
+    notebook = answered()
+    change(notebook)
+    merged = merge(RELEASED, notebook)
+    assert code(merged) == ["import fem_mesh as fm", *added, ORIENT, CHECKS[0], IN_CIRCLE, CHECKS[1]]
+    assert merged.added == added  # so the scan reads them, too
+    assert merged.notes == told
+    assert bool(merged.dropped) == bool(told)
+
+
+def test_imports_that_were_added_are_not_taken_for_an_answer():
+    notebook = answered()
+    imported(notebook)
+    del notebook.cells[position(notebook, "a-orient")]
+    assert merge(RELEASED, notebook).notes == ["orient was not found: it was deleted or renamed"]
+
+
+def test_a_copy_below_the_check_runs_where_it_stands():
+    notebook = answered()
+    notebook.cells.append(copy.deepcopy(notebook.cells[position(notebook, "a-orient")]))
+    notebook.cells[-1].id, notebook.cells[-1].source = "draft", "def orient(a, b, c):\n    return 1"
+    assert code(merge(RELEASED, notebook)) == [
+        "import fem_mesh as fm",
+        ORIENT,
+        CHECKS[0],
+        IN_CIRCLE,
+        CHECKS[1],
+        notebook.cells[-1].source,
+    ]
+    cell(notebook, "a-orient").source = cell(RELEASED, "a-orient").source  # then it is the answer
+    assert code(merge(RELEASED, notebook))[1] == notebook.cells[-1].source
+
+
+def test_another_cell_before_a_deleted_answer_does_not_pass_for_it():
+    notebook = answered()
+    at = position(notebook, "a-orient")
+    notebook.cells[at] = new_code_cell('print("hello")')
+    assert merge(RELEASED, notebook).notes == ["orient was not found: it was deleted or renamed"]
+
+
+def test_any_number_of_cells_of_ones_own_hides_no_answer():
+    notebook = answered()
+    notebook.cells[1:1] = [new_code_cell("1") for _ in range(3000)]
+    merged = merge(RELEASED, notebook)
+    assert code(merged)[-5:] == ["import fem_mesh as fm", ORIENT, CHECKS[0], IN_CIRCLE, CHECKS[1]]
+    assert len(merged.cells) == 305
+    assert merged.notes == ["of the cells that you added, the first 300 were run"]
 
 
 KEYS = st.sampled_from(["cells", "id", "source", "metadata", "cell_type", "nbgrader", "grade_id"])

@@ -42,7 +42,8 @@ def test_solutions_may_be_parts_marked_in_nbgraders_way_and_hidden_tests_go():
         "x = 1\n### BEGIN SOLUTION\ny = 2\n### END SOLUTION\nz = 3\nif z:\n\t# begin solution\n\tw = 4\n\t# end solution"
     )
     cell(notebook, "c-orient").source += "\n### BEGIN HIDDEN TESTS\nassert y == 2\n### END HIDDEN TESTS"
-    version, _ = release(notebook)
+    version, notes = release(notebook)
+    assert notes == ["cell 5 (check-orient) has hidden tests: they are not run, for other cases are tried in grading anyway"]
     stub = "raise NotImplementedError()"
     assert cell(version, "a-orient").source == f"x = 1\n{stub}\nz = 3\nif z:\n\t{stub}"
     assert cell(version, "c-orient").source == "fm.check.orient(orient)"
@@ -117,6 +118,72 @@ def test_the_command_never_writes_over_the_solutions(tmp_path):
     assert call("homework", "release", path, "-o", tmp_path / "out", "--force").exit_code == 0
 
 
+def test_nothing_hangs_on_an_answer_that_could_be_its_solution():
+    notebook = source()
+    cell(notebook, "explain").attachments = {"solution.png": {"image/png": "aGVsbG8="}}
+    cell(notebook, "a-orient").metadata |= {"comment": "use Fraction", "tags": ["x"]}
+    version, _ = release(notebook)
+    assert "solution.png" not in json.dumps(version)
+    assert "use Fraction" not in json.dumps(version)
+    assert cell(version, "a-orient").metadata.tags == ["x"]
+
+
+@pytest.mark.parametrize(
+    ("check", "message"),
+    [
+        ("for f in (orient, orient): fm.check.orient(f)", r"cell 5 .check-orient.: fm.check.orient\(f\) stands in a loop"),
+        ("(lambda: fm.check.orient(orient))()", "stands in a loop or a function"),
+        ("from fem_mesh.check import orient as chk\nchk(orient)", "write each call as fm.check.orient"),
+        ("c = fm.check\nc.orient(orient)", "fm.check: write each call as"),
+    ],
+)
+def test_a_check_that_the_grader_cannot_read_off_is_refused(check, message):
+    notebook = source()
+    cell(notebook, "c-orient").source = check
+    with pytest.raises(NotebookError, match=message):
+        release(notebook)
+
+
+def test_a_given_cell_that_would_fail_when_graded_is_told():
+    notebook = source()
+    cell(notebook, "imports").source += "\nfrom fem_mesh import refine\nx = fm.delaunay(fm.random_points(9, seed=1))\nfm.orient"
+    assert release(notebook)[1] == [
+        "cell 2 uses fm.delaunay, which is never handed out: while homework is graded, the cell fails there: write its result "
+        "down, as a list",
+        'cell 2 uses fm.orient, which is not in "uses": while homework is graded, the cell fails there',
+        "cell 2 uses fm.refine, which is never handed out: while homework is graded, the cell fails there: write its result "
+        "down, as a list",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("uses", "check", "message"),
+    [
+        (["orient", "delaunay"], "fm.check.orient(orient)", "'delaunay', which meshes or needs what does"),
+        (["nothing"], "fm.check.orient(orient)", "'nothing', which fem_mesh does not hand out"),
+        ([], "fm.check.nothing(orient)", r"fm.check.nothing\(orient\)"),
+        ([], "fm.check.mesh(p, t)", "say what is to be meshed"),
+    ],
+)
+def test_what_could_not_be_graded_is_not_released(uses, check, message):
+    notebook = source()
+    notebook.metadata.fem_mesh["uses"] = uses
+    cell(notebook, "c-orient").source = check
+    with pytest.raises(NotebookError, match=message):
+        release(notebook)
+
+
+def test_students_do_not_get_a_cell_for_the_instructor():
+    notebook = source()
+    notebook.cells.insert(1, new_code_cell("mine = 1", metadata={"tags": ["keep", "instructor"]}))
+    version, _ = release(notebook)
+    assert [each.id for each in version.cells] == [each.id for each in source().cells]
+    assert [task.at for task in tasks_of(version)] == [task.at for task in tasks_of(source())]
+    cell(notebook, "c-orient").metadata["tags"] = ["instructor"]
+    with pytest.raises(NotebookError, match=r"cell 6 .check-orient. is tagged .instructor., so students would not get it"):
+        release(notebook)
+
+
 def test_a_new_homework_can_be_released_as_it_is(tmp_path):
     path = tmp_path / "hw6.ipynb"
     assert "next: fem-mesh homework release" in call("homework", "new", path).output
@@ -125,6 +192,8 @@ def test_a_new_homework_can_be_released_as_it_is(tmp_path):
     version, notes = release(nbformat.read(path, as_version=4))
     assert notes == []
     assert "Fraction" not in json.dumps(version)
+    assert "For you" in path.read_text()
+    assert "For you" not in json.dumps(version)
     nbformat.validate(starter("a"))
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -10,9 +11,9 @@ from fem_mesh.algorithms.delaunay import delaunay
 from fem_mesh.check.pictures import beside, panel
 from fem_mesh.check.reading import Row, read_triangles
 from fem_mesh.check.triangulation import (
+    Edge,
     Triangulation,
     bad_edges,
-    check_returned,
     check_valid,
     check_whole,
     edges_of,
@@ -38,6 +39,8 @@ def judge_bowyer_watson(case: dict[str, Any], run: Run) -> None:
             rows = read_triangles(value)
             if not rows and k == first - 1 and step <= k:
                 continue
+            if not rows and k == first - 1 and first <= n < len(run.yields):
+                raise Wrong(f"there are {len(run.yields)} states of {n} points: yield once after each point, not before")
             k += 1
             if k > n:
                 raise Wrong("all points are in already: yield once after each point" if first <= n else _on_a_line(n, rows))
@@ -45,7 +48,6 @@ def judge_bowyer_watson(case: dict[str, Any], run: Run) -> None:
     run.finish()
     if k < n:
         raise Wrong(f"it ended with {max(k, 0) if k >= first else 0} of {n} points: yield the triangles after each point")
-    check_returned(run.returned, mesh)
 
 
 def judge_insertion(before: Triangulation, points: np.ndarray, rows: list[Row], k: int) -> Triangulation:
@@ -111,8 +113,8 @@ def explain(wrong: Wrong, before: Triangulation, mesh: Triangulation) -> Wrong:
                 _picture(mesh, wrong_edges=edges_of([triangle])),
             )
     lost = missing_hull(mesh) if "convex hull" in wrong.message else []
-    more = ": if you use a super-triangle, it is too near" if lost else ""
-    return Wrong(wrong.message + more, _picture(mesh, wrong=mesh.all - before.all, wrong_edges=lost))
+    more = ": if you use a super-triangle, it is too near; if ghosts, an edge of the hull has none" if lost else ""
+    return Wrong(wrong.message + more, _picture(mesh, lost, wrong=mesh.all - before.all))
 
 
 def _on_a_line(n: int, rows: list[Row]) -> str:
@@ -120,9 +122,9 @@ def _on_a_line(n: int, rows: list[Row]) -> str:
     return f"all {n} points lie on one line, so there is no triangle: {more}"
 
 
-def _picture(mesh: Triangulation, **mine: Any) -> Picture:
-    """Theirs beside a Delaunay triangulation of the same points; the newest one wears a ring."""
+def _picture(mesh: Triangulation, lost: Iterable[Edge] = (), **mine: Any) -> Picture:
+    """Theirs beside a Delaunay triangulation of the same points, with edges that are lost; the newest one wears a ring."""
     new = [len(mesh.points) - 1]
     good = Triangulation(mesh.points, map(tuple, delaunay(mesh.points).triangles.tolist()))
     yours = panel("yours", mesh.triangles, point=new, **mine)
-    return beside(mesh.points, yours, panel("Delaunay", good.triangles, right=good.all - mesh.all, point=new))
+    return beside(mesh.points, yours, panel("Delaunay", good.triangles, right=good.all - mesh.all, right_edges=lost, point=new))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from collections import Counter
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -14,12 +15,12 @@ from fem_mesh.check.triangulation import Edge, Triangulation, bad_edges, check_v
 from fem_mesh.check.verdict import Wrong
 from fem_mesh.domain.domain import Domain
 from fem_mesh.mesh.points import as_points
-from fem_mesh.mesh.quality import angles, areas
+from fem_mesh.mesh.quality import angles
 
 if TYPE_CHECKING:
     from fem_mesh.check.judge import Run
 
-ROOM = 1e-9  # in degrees, and as a share of lengths and areas
+ROOM = 1e-9  # in degrees, and as a share of lengths
 
 
 def mesh_case(delaunay: bool = True, min_angle: float | None = None, domain: Any = None, points: Any = None) -> dict[str, Any]:
@@ -56,7 +57,7 @@ def judge_mesh(case: dict[str, Any], run: Run) -> None:
         elif case["delaunay"]:
             check_whole(mesh)
     except Wrong as wrong:
-        raise Wrong(wrong.message, beside(points, panel("yours", mesh.triangles))) from None
+        raise Wrong(wrong.message, wrong.picture or beside(points, panel("yours", mesh.triangles))) from None
     for a, b, c, d in bad_edges(mesh, kept) if case["delaunay"] else ():
         yours = panel("yours", mesh.triangles, wrong=[(a, b, c)], circles=[(a, b, c)], segments=kept, point=[d])
         rest = [t for t in mesh.triangles if not {a, b} <= set(t)]
@@ -75,28 +76,56 @@ def judge_mesh(case: dict[str, Any], run: Run) -> None:
 
 
 def check_domain(mesh: Triangulation, domain: Domain) -> set[Edge]:
-    """Every segment is a chain of edges, and the triangles have the domain's area; returns the edges on segments."""
-    points, edges = mesh.points, mesh.edges
-    used = np.unique(np.array(mesh.triangles))
-    kept = set()
-    for a, b in domain.segments.tolist():
-        p, along = domain.points[a], domain.points[b] - domain.points[a]
-        to, square = points[used] - p, float((along**2).sum())
-        share = to @ along / square
-        off = np.abs(to[:, 0] * along[1] - to[:, 1] * along[0]) / square
-        on = (off <= ROOM) & (share >= -ROOM) & (share <= 1 + ROOM)
-        chain = used[on][share[on].argsort(kind="stable")].tolist()
-        if share[on].min(initial=1) > ROOM or share[on].max(initial=0) < 1 - ROOM:
-            raise Wrong(f"an end of the domain's segment from {_at(p)} to {_at(p + along)} is no vertex of the mesh")
-        for u, v in itertools.pairwise(chain):
-            if edge_of(u, v) not in edges:
-                raise Wrong(f"the domain's segment from {_at(p)} to {_at(p + along)} is no chain of edges: {u}-{v} is missing")
-            kept.add(edge_of(u, v))
-    wanted = float(constrained_delaunay(domain).areas().sum())
-    found = float(areas(points, np.array(mesh.triangles)).sum())
-    if abs(found - wanted) > ROOM * wanted:
-        raise Wrong(f"the triangles cover an area of {found:.6g}, and the domain has {wanted:.6g}")
+    """Every segment is a chain of edges with as many triangles beside it as in the domain, and all else is filled.
+
+    Returns the edges on segments.
+    """
+    beside_edge = Counter(edge_of(*edge) for edge in mesh.apex)
+    used, kept = np.unique(np.array(mesh.triangles)), set()
+    for (a, b), sides in zip(domain.segments.tolist(), sides_of_segments(domain), strict=True):
+        p, q = domain.points[[a, b]]
+        segment = f"the domain's segment from {_at(p)} to {_at(q)}"
+        for u, v in itertools.pairwise(vertices_along(mesh.points, used, p, q, segment) if sides else ()):
+            edge = edge_of(u, v)
+            if edge not in beside_edge:
+                raise not_covered(mesh, edge, f"{segment} is no chain of edges: {u}-{v} is missing")
+            if beside_edge[edge] not in sides:
+                found, wanted = ("both sides", "one") if beside_edge[edge] == 2 else ("one side only", "both")
+                raise not_covered(
+                    mesh, edge, f"edge {u}-{v} has triangles on {found}, but on {segment} the domain has {wanted}"
+                )
+            kept.add(edge)
+    for u, v in sorted(edge for edge, triangles in beside_edge.items() if triangles == 1 and edge not in kept):
+        raise not_covered(mesh, (u, v), f"one side of edge {u}-{v} has no triangle, and it lies on no segment of the domain")
     return kept
+
+
+def not_covered(mesh: Triangulation, edge: Edge, message: str) -> Wrong:
+    """What is wrong, and where."""
+    return Wrong(message, beside(mesh.points, panel("yours", mesh.triangles, wrong_edges=[edge])))
+
+
+def sides_of_segments(domain: Domain) -> list[set[int]]:
+    """For each segment, on how many sides of its pieces the domain lies; nothing for a segment outside."""
+    mesh = constrained_delaunay(domain)
+    triangles = Counter(edge_of(t[i - 1], t[i]) for t in mesh.triangles.tolist() for i in range(3))
+    sides: list[set[int]] = [set() for _ in domain.segments]
+    for (a, b), row in zip(mesh.segments.tolist(), mesh.segment_of.tolist(), strict=True):
+        sides[row].add(triangles[edge_of(a, b)])
+    return sides
+
+
+def vertices_along(points: np.ndarray, used: np.ndarray, p: np.ndarray, q: np.ndarray, segment: str) -> list[int]:
+    """The vertices from p to q, in their order. Raises Wrong where an end is none."""
+    to, along = points[used] - p, q - p
+    square = float((along**2).sum())
+    share = to @ along / square
+    off = np.abs(to[:, 0] * along[1] - to[:, 1] * along[0]) / square
+    on = (off <= ROOM) & (share >= -ROOM) & (share <= 1 + ROOM)
+    if share[on].min(initial=1) > ROOM or share[on].max(initial=0) < 1 - ROOM:
+        raise Wrong(f"an end of {segment} is no vertex of the mesh")
+    chain: list[int] = used[on][share[on].argsort(kind="stable")].tolist()
+    return chain
 
 
 def _at(p: np.ndarray) -> str:

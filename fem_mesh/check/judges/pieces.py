@@ -26,7 +26,7 @@ def judge_exchange(before: Triangulation, edge: Edge, returned: Any) -> None:
     """One flip of ``edge``."""
     (a, b), name = edge, f"edge {say_edge(*edge)}"
     tips = before.apex.get((a, b)), before.apex.get((b, a))
-    shown = panel("before", before.triangles, right_edges=[edge])
+    shown = panel(f"before: {name}", before.triangles, edges=[edge])
     if None in tips:
         _must_be_none(returned, f"{name} lies on the hull, so it cannot be flipped", before, shown)
         return

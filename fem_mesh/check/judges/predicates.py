@@ -110,16 +110,14 @@ def _short(x: float) -> str:
 
 
 def _shown(returned: Any) -> str:
-    return describe(returned) if not isinstance(returned, dict) else f"{describe(returned)} of sign {returned['sign']}"
+    told = isinstance(returned, dict) and "text" not in returned
+    return f"{describe(returned)} of sign {returned['sign']}" if told else describe(returned)
 
 
 def _orient_picture(given: Sequence[Point], yours: str, expected: str) -> Picture:
     words = ["a", "b", "c"]
-    mine = {"title": yours, "wrong_edges": [[0, 1]], "point": [2], "words": words}
-    return {
-        "points": [list(p) for p in given],
-        "panels": [mine, {**mine, "title": expected, "wrong_edges": [], "right_edges": [[0, 1]]}],
-    }
+    mine = {"title": yours, "edges": [[0, 1]], "point": [2], "words": words}
+    return {"points": [list(p) for p in given], "panels": [mine, {**mine, "title": expected}]}
 
 
 def _circle_picture(given: Sequence[Point], yours: str, expected: str) -> Picture:

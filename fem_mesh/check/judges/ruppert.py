@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fem_mesh.algorithms.constrained_delaunay import constrained_delaunay
+from fem_mesh.algorithms.delaunay import delaunay
 from fem_mesh.check.judges.segments import is_inside, toggling
 from fem_mesh.check.pictures import beside, panel
 from fem_mesh.check.reading import read_rows, read_state
@@ -28,7 +29,7 @@ from fem_mesh.check.verdict import Picture, Wrong, at_step
 from fem_mesh.domain.domain import Domain
 from fem_mesh.mesh.points import as_points
 from fem_mesh.mesh.quality import angles, circumcenters
-from fem_mesh.predicates import in_diametral_circle, in_diametral_circle_sign
+from fem_mesh.predicates import in_diametral_circle, in_diametral_circle_sign, orient
 
 if TYPE_CHECKING:
     from fem_mesh.check.judge import Run
@@ -103,11 +104,15 @@ class State:
         return panel(title, self.mesh.triangles, points=self.mesh.points, segments=self.pieces, right_edges=first)
 
     def encroached(self) -> list[tuple[Edge, int]]:
-        """The sub-segments with a vertex that sees them, from a triangle beside, well inside their circles."""
+        """The sub-segments with a vertex well inside their circles that sees them, from a triangle beside.
+
+        Whether a vertex sees one that is no edge is not asked: it has to be split.
+        """
         found = []
         for a, b in sorted(self.pieces):
-            for tip in (self.mesh.apex.get((a, b)), self.mesh.apex.get((b, a))):
-                if tip is not None and is_well_inside(*self.mesh.at(a, b, tip)):
+            tips: Iterable[int] = [self.mesh.apex[e] for e in ((a, b), (b, a)) if e in self.mesh.apex]
+            for tip in tips or sorted(set(range(len(self.mesh.points))) - {a, b}):
+                if is_well_inside(*self.mesh.at(a, b, tip)):
                     found.append(((a, b), tip))
         return found
 
@@ -155,10 +160,7 @@ def judge_center(state: State, points: np.ndarray) -> None:
     radii = np.hypot(*(mesh.points[rows[:, 0]] - state.centers).T)
     hits = np.flatnonzero(np.hypot(*(state.centers - p).T) <= ROOM * radii)
     if not len(hits):
-        raise Wrong(
-            f"the new point {_at(p)} is neither the midpoint of a segment nor the centre of the circle of a triangle",
-            beside(points, panel("yours", mesh.triangles, segments=state.pieces, point=new), state.panel()),
-        )
+        raise no_center(state, points)
     best = hits[state.angles[hits].argmin()]
     triangle = tuple(state.inside[best])
     yours: dict[str, Any] = {"segments": state.pieces, "circles": [triangle], "point": new}
@@ -173,6 +175,34 @@ def judge_center(state: State, points: np.ndarray) -> None:
             f"you inserted the centre of a circle, but segment {a}-{b} is encroached upon by vertex {tip}: it is split first",
             beside(points, panel("yours", mesh.triangles, **yours), {**state.panel(), "diametral": [[a, b]], "point": [tip]}),
         )
+
+
+def no_center(state: State, points: np.ndarray) -> Wrong:
+    """What the newest point is, if it is no centre of a triangle inside: there already, one of outside, or nothing."""
+    p, mesh, new = points[-1], state.mesh, [len(points) - 1]
+    yours: dict[str, Any] = {"segments": state.pieces, "point": new}
+    for v in np.flatnonzero((mesh.points == p).all(axis=1))[:1].tolist():
+        ends = [w for piece in state.pieces if v in piece for w in piece if w != v]
+        is_split = len(ends) == 2 and orient(*mesh.at(ends[0], v, ends[1])) == 0
+        more = ": once a segment is split, its halves take its place in the list" if is_split else ""
+        return Wrong(
+            f"the new point {_at(p)} is vertex {v} again{more}",
+            beside(points, panel("yours", mesh.triangles, **yours), state.panel()),
+        )
+    loops = [piece for piece, toggles in state.pieces.items() if toggles]
+    whole = Triangulation(mesh.points, map(tuple, delaunay(mesh.points).triangles.tolist()))  # of the hull
+    for triangle in sorted(t for t in whole.triangles if not is_inside(mesh.points, loops, t)):
+        center = circumcenters(mesh.points, np.array([triangle]))[0]
+        if np.hypot(*(p - center)) <= ROOM * np.hypot(*(mesh.points[triangle[0]] - center)):
+            return Wrong(
+                f"the new point {_at(p)} is the centre of the circle of triangle {triangle}, which lies outside the domain: "
+                "only triangles inside are refined",
+                beside(points, panel("yours", mesh.triangles, wrong=[triangle], circles=[triangle], **yours), state.panel()),
+            )
+    return Wrong(
+        f"the new point {_at(p)} is neither the midpoint of a segment nor the centre of the circle of a triangle",
+        beside(points, panel("yours", mesh.triangles, **yours), state.panel()),
+    )
 
 
 def check_covers(mesh: Triangulation, pieces: Pieces) -> None:
@@ -234,7 +264,8 @@ def judge_encroached(case: dict[str, Any], run: Run) -> None:
     places, segments = [tuple(p) for p in case["points"]], [edge_of(a, b) for a, b in case["segments"]]
     if isinstance(run.returned, list) and any(isinstance(i, int) for i in run.returned):
         raise Wrong("you returned numbers: return the segments themselves, as pairs (a, b)")
-    found = {edge_of(*row) for row in read_rows(run.returned, "segment", 2, "returned")}
+    rows = [edge_of(*row) for row in read_rows(run.returned, "segment", 2, "returned")]
+    found = set(rows)
     for edge in sorted(found - set(segments)):
         raise Wrong(f"{edge} is none of the segments")
     upon = {
@@ -250,3 +281,5 @@ def judge_encroached(case: dict[str, Any], run: Run) -> None:
             yours = panel("yours", segments=segments, wrong_edges=found ^ truth, diametral=[(a, b)], point=inside[:1])
             right = panel("expected", segments=segments, right_edges=truth, diametral=[(a, b)], point=inside[:1])
             raise Wrong(f"{where} inside the circle over segment {a}-{b}, but {said}", beside(places, yours, right))
+        if rows.count((a, b)) > 1:
+            raise Wrong(f"segment {a}-{b} is there more than once: one point inside is enough")

@@ -8,14 +8,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from fem_mesh.check.judges.lawson import find_flip
 from fem_mesh.check.pictures import beside, panel
 from fem_mesh.check.reading import read_triangles
 from fem_mesh.check.triangulation import (
     Edge,
+    Triangle,
     Triangulation,
     bad_edges,
     check_once,
-    check_returned,
     check_valid,
     check_whole,
     edge_of,
@@ -26,6 +27,7 @@ from fem_mesh.check.verdict import Wrong, at_step
 from fem_mesh.domain.domain import Domain
 from fem_mesh.mesh.points import as_points
 from fem_mesh.mesh.validators import do_cross
+from fem_mesh.predicates import orient
 
 if TYPE_CHECKING:
     from fem_mesh.check.judge import Run
@@ -41,7 +43,6 @@ def judge_segments(case: dict[str, Any], run: Run) -> None:
             judge_state(mesh, after, segments)
         mesh = after
     run.finish()
-    check_returned(run.returned, mesh)
     for a, b in segments:
         if (a, b) not in mesh.edges:
             across = [edge for edge in sorted(mesh.edges) if do_cross(points, a, b, *edge)]
@@ -64,8 +65,9 @@ def judge_segments(case: dict[str, Any], run: Run) -> None:
 
 def judge_state(before: Triangulation, after: Triangulation, segments: Iterable[Edge]) -> None:
     """A triangulation of all points, whatever it is."""
-    new = after.all - before.all
+    gone, new = before.all - after.all, after.all - before.all
     try:
+        check_flip(before, sorted(gone), sorted(new))
         check_valid(after)
         check_whole(after)
     except Wrong as wrong:
@@ -79,6 +81,19 @@ def judge_state(before: Triangulation, after: Triangulation, segments: Iterable[
                 panel("before the step", before.triangles, segments=segments, right_edges=before.edges - after.edges),
             ),
         ) from None
+
+
+def check_flip(before: Triangulation, gone: list[Triangle], come: list[Triangle]) -> None:
+    """If what changed is one flip, it was possible."""
+    flip = find_flip(gone, come)
+    if flip is None:
+        return
+    (a, b), (c, d) = flip
+    if orient(*before.at(c, d, a)) * orient(*before.at(c, d, b)) >= 0:
+        raise Wrong(
+            f"you flipped edge {a}-{b}, but its quadrilateral {a}, {d}, {b}, {c} is not strictly convex: "
+            "leave this edge, and try it again later"
+        )
 
 
 def _list(edges: list[Edge]) -> str:

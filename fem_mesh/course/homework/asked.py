@@ -11,11 +11,13 @@ import numpy as np
 
 import fem_mesh
 from fem_mesh.check import cases_of, mesh_case
-from fem_mesh.course.homework.cells import Call, role
+from fem_mesh.course.homework.cells import Call, calls_in, role
 from fem_mesh.course.notebooks import NotebookError
 
 KNOWN: dict[str, Any] = {"fm": fem_mesh, "fem_mesh": fem_mesh, "np": np}
 PLACES = ("points", "triangles", "delaunay", "min_angle", "domain")  # the arguments of check.mesh
+
+REPEATING = (ast.For, ast.While, ast.FunctionDef, ast.Lambda, ast.ListComp, ast.SetComp, ast.DictComp, ast.GeneratorExp)
 
 
 def cases_of_call(call: Call, seed: int, given: Mapping[str, ast.expr] | None = None) -> list[dict[str, Any]]:
@@ -32,6 +34,26 @@ def cases_of_call(call: Call, seed: int, given: Mapping[str, ast.expr] | None = 
         raise
     except Exception as error:  # whatever the instructor's own expression raises
         raise NotebookError(f"{call.text}: {type(error).__name__}: {error}") from None
+
+
+def refuse_unreadable(source: str) -> None:
+    """Raise NotebookError where a check cell's calls cannot be read off it: checks under other names, or in a loop.
+
+    >>> refuse_unreadable("for f in (mine, yours): fm.check.orient(f)")
+    Traceback (most recent call last):
+    fem_mesh.course.notebooks.NotebookError: fm.check.orient(f) stands in a loop or a function: write each call of a check out
+    """
+    tree = _parsed(source)
+    nodes = list(ast.walk(tree)) if tree else []
+    called = {id(node.func.value) for node in nodes if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute)}
+    for node in nodes:
+        named = isinstance(node, ast.ImportFrom) and (node.module or "").startswith("fem_mesh.check")
+        named |= isinstance(node, ast.Attribute) and node.attr == "check" and id(node) not in called
+        if named:
+            raise NotebookError(f"{ast.unparse(node)}: write each call as fm.check.orient(f), for the grader reads the name")
+        if isinstance(node, REPEATING):
+            for call in calls_in(ast.unparse(node)):
+                raise NotebookError(f"{call.text} stands in a loop or a function: write each call of a check out")
 
 
 def _asked_of_mesh(call: Call, given: Mapping[str, ast.expr]) -> dict[str, Any]:
@@ -92,7 +114,7 @@ def _value(node: ast.expr) -> Any:
 
 
 def names_in(sources: Iterable[str]) -> set[str]:
-    """The public names of fem_mesh that code uses, as ``fm.name``.
+    """The public names of fem_mesh that code uses, as ``fm.name`` or from an import.
 
     >>> sorted(names_in(["fm.check.mesh(p, t, domain=fm.square())"]))
     ['square']
@@ -103,4 +125,6 @@ def names_in(sources: Iterable[str]) -> set[str]:
         for node in ast.walk(tree) if tree else ():
             if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id in ("fm", "fem_mesh"):
                 names.add(node.attr)
+            elif isinstance(node, ast.ImportFrom) and node.module == "fem_mesh":
+                names |= {alias.name for alias in node.names}
     return names & set(fem_mesh.__all__) - {"check"}

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import contextlib
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -19,14 +20,16 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from queue import Empty
-from typing import Any
+from typing import Any, NoReturn
 
+from fem_mesh.course.homework.results import clean
 from fem_mesh.course.homework.sandbox import Box, Limits, command_of, environment
 
 ANSWER = "application/vnd.fem-mesh.answer+json"
 GRACE = 3.0  # seconds that a cell has to end after it was interrupted
 START = 60.0  # seconds that a kernel may take to answer
 PULSE = 0.1  # seconds between two looks at whether the kernel lives
+_ANSI, _LINE = re.compile(r"\x1b\[[0-9;]*m"), re.compile(r"Cell In\[[^\]]*\], line (\d{1,6})")
 KEPT = 2_000  # characters kept of what a cell printed or raised
 
 
@@ -40,10 +43,12 @@ class Ran:
 
     answers : what it displayed as an answer, in order: any JSON at all
     error : the exception that ended it, "NameError: ...", or ""
+    line : of the cell, where that was raised, or 0
     """
 
     answers: list[Any] = field(default_factory=list)
     error: str = ""
+    line: int = 0
 
 
 class Watch(threading.Thread):
@@ -65,7 +70,7 @@ class Watch(threading.Thread):
                 return
             if len(family) > self.limits.processes:
                 self.why = f"it started more than {self.limits.processes} processes"
-            elif _resident(family) > self.limits.memory << 20:
+            elif _resident(family) + _held(family) > self.limits.memory << 20:
                 self.why = f"it took more than {self.limits.memory} MB of memory"
             elif _taken(self.folder) > self.limits.memory << 17:
                 self.why = f"it wrote more than {self.limits.memory // 8} MB"
@@ -82,6 +87,20 @@ def _resident(family: Sequence[Any]) -> int:
         with contextlib.suppress(psutil.Error):
             total += process.memory_info().rss
     return total
+
+
+def _held(family: Sequence[Any]) -> int:
+    """Bytes of files that live in memory without a name, as far as this system shows them."""
+    sizes: dict[tuple[int, int], int] = {}
+    for process in family:
+        with contextlib.suppress(OSError):
+            for name in os.listdir(f"/proc/{process.pid}/fd"):
+                path = f"/proc/{process.pid}/fd/{name}"
+                with contextlib.suppress(OSError):
+                    if os.readlink(path).startswith("/memfd:"):
+                        about = os.stat(path)
+                        sizes[about.st_dev, about.st_ino] = about.st_blocks * 512
+    return sum(sizes.values())
 
 
 def _taken(folder: Path) -> int:
@@ -124,7 +143,6 @@ class Kernel:
             ran.error = f"TimeoutError: the cell was not done after {self.limits.cell:g} seconds"
             return ran
         self._lost(f"a cell was not done after {max(seconds, 0):.0f} seconds and could not be interrupted")
-        raise AssertionError  # not reached
 
     def _listen(self, request: str, ran: Ran, seconds: float) -> bool:
         """Hear what the cell says, until it is done (True) or the time is over (False)."""
@@ -155,13 +173,22 @@ class Kernel:
         if kind == "display_data" and isinstance(data, dict) and ANSWER in data:
             ran.answers.append(data[ANSWER])
         elif kind == "error":
-            ran.error = f"{content.get('ename')}: {content.get('evalue')}"[:KEPT]
+            ran.error = clean(f"{content.get('ename')}: {content.get('evalue')}"[:KEPT]).removesuffix(": ")
+            ran.line = _line(content.get("traceback"))
         return False
 
-    def _lost(self, why: str) -> None:
+    def _lost(self, why: str) -> NoReturn:
         time.sleep(PULSE)  # the watch may be about to say more
         end(self.watch.pid)
         raise KernelLost(f"{self.watch.why}, so it was ended" if self.watch.why else why)
+
+
+def _line(traceback: Any) -> int:
+    """The line of the cell that a traceback names first, or 0."""
+    rows = traceback if isinstance(traceback, list) else []
+    text = _ANSI.sub("", "\n".join(row[:KEPT] for row in rows[:10] if isinstance(row, str)))
+    found = _LINE.search(text)
+    return int(found[1]) if found else 0
 
 
 def _said(message: Any, *names: str) -> Any:

@@ -8,19 +8,22 @@ from __future__ import annotations
 
 import contextlib
 import json
+import signal
 import sys
 import time
 from collections.abc import Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from fem_mesh.check import Verdict, judge
 from fem_mesh.course.homework.asked import cases_of_call, given_in, names_in
-from fem_mesh.course.homework.cells import Task, homework_of, tasks_of
-from fem_mesh.course.homework.drive import KernelLost, Ran, kernel_in
-from fem_mesh.course.homework.merge import Merged, merge
+from fem_mesh.course.homework.cells import Task, homework_of, role, tasks_of
+from fem_mesh.course.homework.drive import KernelLost, Ran, clear, kernel_in
+from fem_mesh.course.homework.merge import Merged, label_of, merge
 from fem_mesh.course.homework.packages import Place
-from fem_mesh.course.homework.results import Marked, Result, nothing, to_json
+from fem_mesh.course.homework.reasons import Failed, answers_before, hint
+from fem_mesh.course.homework.results import BY_HAND, HELD, UNANSWERED, UNWRITTEN, Marked, Result, nothing, to_json
 from fem_mesh.course.homework.room import furnish
 from fem_mesh.course.homework.sandbox import Box, Limits
 from fem_mesh.course.homework.scan import scan
@@ -48,9 +51,15 @@ def grade_one(released: Any, submission: bytes, student: str, seed: int, box: Bo
     shown = {call.name: cases[call.text] for call in calls if call.name != "mesh"}  # a mesh comes without being asked for
     uses = sorted({*about["uses"], *names_in(call.text for call in calls)})
     furnish(base / "room", uses, shown, box, limits)
-    ran, lost = _run(merged, tasks, box, limits, base)
-    marked = [_mark(task, ran.get(task.at), cases, lost, merged) for task in tasks]
-    notes = [*merged.notes, *([f"the kernel did not live to the end: {lost}"] if lost else [])]
+    seen = _run(merged, tasks, released, box, limits, base)
+    answers = answers_before(released, tasks)
+    marked = [
+        _mark_by_hand(task, seen, answers[task.at], merged, released.cells[task.at])
+        if task.by_hand
+        else _mark(task, seen, cases, answers[task.at], merged, released)
+        for task in tasks
+    ]
+    notes = [*merged.notes, *([f"the kernel did not live to the end: {seen.lost}"] if seen.lost else [])]
     findings = scan(merged.code, merged.added, about["uses"])
     return Result(student, marked, "", notes, findings, bool(box.bwrap), round(time.monotonic() - began, 2))
 
@@ -63,9 +72,9 @@ def read(submission: bytes) -> dict[str, Any]:
         raise NotebookError("the file is no text, so no notebook") from None
     except RecursionError:
         raise NotebookError("the file is no notebook: it is nested too deeply") from None
-    except ValueError as error:
-        what = "it is empty" if not submission.strip() else f"no JSON ({error})"
-        raise NotebookError(f"the file is no notebook: {what}") from None
+    except ValueError:
+        what = "the file is empty" if not submission.strip() else "the file is no notebook (it is not JSON)"
+        raise NotebookError(f"{what}: save the notebook in JupyterLab, and hand in the file that ends in .ipynb") from None
     if not isinstance(notebook, dict):
         raise NotebookError("the file is no notebook: it is JSON, but no object")
     if isinstance(notebook.get("worksheets"), list):  # nbformat 3
@@ -79,28 +88,59 @@ def read(submission: bytes) -> dict[str, Any]:
     return notebook
 
 
-def _run(merged: Merged, tasks: list[Task], box: Box, limits: Limits, base: Path) -> tuple[dict[int, Ran], str]:
-    """What came of the check cells, by their place, and why the kernel was lost, or nothing."""
+@dataclass
+class Seen:
+    """What came of a run.
+
+    ran : of the cells that are worth points, by their place
+    failed : the other cells that raised something, in order
+    lost : why the kernel was lost, or an empty string
+    """
+
+    ran: dict[int, Ran] = field(default_factory=dict)
+    failed: list[Failed] = field(default_factory=list)
+    lost: str = ""
+
+
+def _run(merged: Merged, tasks: list[Task], released: Any, box: Box, limits: Limits, base: Path) -> Seen:
     checks = {task.at for task in tasks}
-    ran: dict[int, Ran] = {}
+    seen = Seen()
     try:
         with kernel_in(box, base, limits) as kernel:
             for source, at in merged.cells:
                 if source.strip():
                     came = kernel.run(source)
                     if at in checks:
-                        ran[at] = came
+                        seen.ran[at] = came
+                    elif came.error:
+                        label = label_of(released.cells[at]) if at >= 0 else "a cell that you added"
+                        seen.failed.append(Failed(label, source, came.error, came.line))
     except KernelLost as error:
-        return ran, str(error)
-    return ran, ""
+        seen.lost = str(error)
+    return seen
 
 
-def _mark(task: Task, ran: Ran | None, cases: Mapping[str, Any], lost: str, merged: Merged) -> Marked:
-    if task.by_hand:
-        text = merged.answers.get(task.name, "")[:LONGEST]
-        return Marked(task.name, task.title, task.points, None, "to be marked by hand", text=text)
+def _mark_by_hand(task: Task, seen: Seen, own: list[str], merged: Merged, cell: Any) -> Marked:
+    """A task to be marked by hand: an open answer, or a cell of tests that nobody but the student's kernel has run."""
+    if role(cell) == "explain":
+        text = merged.answers.get(task.name, "")
+        answered = text.strip() and (task.name not in merged.untouched or not cell.metadata["nbgrader"].get("solution"))
+        said, text = (BY_HAND, text) if answered else (UNANSWERED, "")
+    else:
+        text = "\n\n".join(merged.answers[name] for name in own if name in merged.answers)
+        ran = seen.ran.get(task.at, Ran(error=seen.lost))
+        said = f"{BY_HAND}; when it was run: {ran.error}" if ran.error else HELD
+        if own and merged.untouched.issuperset(own):
+            said, text = UNWRITTEN, ""
+    return Marked(task.name, task.title, task.points, None, said, text=text[:LONGEST])
+
+
+def _mark(
+    task: Task, seen: Seen, cases: Mapping[str, Any], own: list[str], merged: Merged, released: Any
+) -> Marked:  # fmt: skip
+    ran = seen.ran.get(task.at)
     if ran is None:
-        return Marked(task.name, task.title, task.points, 0, f"the check did not run to its end: {lost}")
+        return Marked(task.name, task.title, task.points, 0, f"the check did not run to its end: {seen.lost}")
     answers = ran.answers
     if len(answers) > len(task.calls):
         said = f"the check cell showed {len(answers)} answers where it asks for {len(task.calls)}"
@@ -111,9 +151,14 @@ def _mark(task: Task, ran: Ran | None, cases: Mapping[str, Any], lost: str, merg
         verdict = _judged(call.name, answer, cases[call.text])
         verdicts.append(verdict)
         if not verdict.right:
-            messages.append(str(verdict))
+            before = f"right on {verdict.passed} of {verdict.total} cases, then: " if verdict.passed else ""
+            why = hint(verdict.message, seen.failed, merged, released)
+            messages.append(f"{before}{verdict}" + (f"; {why}" if why else ""))
     if len(answers) < len(task.calls):
-        messages.append(f"no answer came to the check {task.calls[len(answers)].name}: {ran.error or 'it showed nothing'}")
+        why = hint(ran.error, seen.failed, merged, released) or ran.error or "it showed nothing"
+        messages.append(f"no answer came to the check {task.calls[len(answers)].name}: {why}")
+    if messages and own and merged.untouched.issuperset(own):
+        return Marked(task.name, task.title, task.points, 0, UNWRITTEN)
     said = messages[0] if messages else "; ".join(map(str, verdicts))
     return Marked(task.name, task.title, task.points, 0 if messages else task.points, said, [v.as_json() for v in verdicts])
 
@@ -146,9 +191,31 @@ class Node(dict[str, Any]):
         return self[name]
 
 
+def _end_with_parent() -> None:
+    """Where the command is killed, end as by an exception, so that the kernel ends, too, and its folder goes."""
+
+    def leave(*_: object) -> None:
+        signal.signal(signal.SIGTERM, signal.SIG_IGN)  # it comes once for each thread that dies, and cleaning up takes a while
+        sys.exit("ended from outside")
+
+    signal.signal(signal.SIGTERM, leave)
+    if sys.platform == "linux":
+        import ctypes
+
+        ctypes.CDLL(None).prctl(1, signal.SIGTERM)  # PR_SET_PDEATHSIG
+
+
 def main() -> None:
     """Read a job, grade it, write the result."""
+    _end_with_parent()
     job = json.load(sys.stdin)
+    try:
+        _grade(job)
+    finally:
+        clear(Path(job["base"]))
+
+
+def _grade(job: dict[str, Any]) -> None:
     with contextlib.suppress(ImportError, ValueError, OSError):
         import resource
 

@@ -5,14 +5,22 @@ from __future__ import annotations
 from typing import Any
 
 from fem_mesh.course.homework.cells import metadata
+from fem_mesh.course.homework.release import FOR_YOU
 from fem_mesh.course.notebooks import _nbformat
 
 _TITLE = """# {name}
 
 What the homework is about, in two or three sentences, and what students will be able to do.
 
-*For you, and to be deleted: a cell's part is told by nbgrader's metadata, which nbgrader's own panel in JupyterLab edits.
-The notebook's metadata `fem_mesh.uses` lists the names of `fm` that answers may use.*"""
+Your own imports and helpers go into your answer cells, or into cells that you add."""
+_FOR_YOU = """**For you: this cell is tagged `instructor`, so `release` leaves it out.**
+
+- A cell's metadata `nbgrader` tell its part. An *answer* has `"solution": true`. A *check* has `"grade": true` and points,
+  and gives all of them or none. An *open question* has both: you mark it by hand. All other cells are run as you wrote them.
+- They are edited by nbgrader's panel where that is installed, or in JupyterLab's right sidebar: Property Inspector (the two
+  gears), Advanced Tools, Cell Metadata. Give each cell a `grade_id` of its own.
+- `help(fm.check)` lists the checks. A check cell with asserts of your own is marked by hand.
+- There, too, Notebook Metadata: `fem_mesh.uses` lists the names of `fm` that answers may use."""
 _TASK = """## Task 1: on which side?
 
 Write `orient(a, b, c)`: positive if `c` lies to the left of the line from `a` to `b`, negative if to the right, 0 on the line.
@@ -33,11 +41,12 @@ def starter(name: str) -> Any:
     """A notebook, as nbformat's dictionary, that can be released and graded as it is.
 
     >>> [cell.cell_type for cell in starter("hw6").cells]
-    ['markdown', 'code', 'markdown', 'code', 'code', 'markdown', 'markdown']
+    ['markdown', 'markdown', 'code', 'markdown', 'code', 'code', 'markdown', 'markdown']
     """
     v4 = _nbformat().v4
     cells = [
         ("markdown", "title", _TITLE.format(name=name), {}),
+        ("markdown", "for-you", _FOR_YOU, {"tags": [FOR_YOU]}),
         ("code", "imports", "import fem_mesh as fm", {}),
         ("markdown", "task-1", _TASK, {}),
         ("code", "answer-orient", _ANSWER, metadata("answer", "answer-orient")),

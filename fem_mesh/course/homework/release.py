@@ -6,12 +6,14 @@ import re
 from copy import deepcopy
 from typing import Any
 
-from fem_mesh.course.homework.asked import names_in
-from fem_mesh.course.homework.cells import KEYS, SCHEMA, homework_of, name_of, role, tasks_of
+from fem_mesh.course.homework.asked import cases_of_call, given_in, names_in, refuse_unreadable
+from fem_mesh.course.homework.cells import KEYS, SCHEMA, Task, homework_of, name_of, role, tasks_of
 from fem_mesh.course.notebooks import NotebookError
 
 STUB = "raise NotImplementedError()"
 OPEN = "YOUR ANSWER HERE"
+FOR_YOU = "instructor"  # the tag of a cell that students do not get
+OURS = ("nbgrader", "tags", "jupyter", "editable", "deletable")  # metadata that answers keep
 _BEGIN = re.compile(r"^(\s*)#+\s*BEGIN\s+(SOLUTION|HIDDEN\s+TESTS)\b.*$", re.IGNORECASE)
 _END = re.compile(r"^\s*#+\s*END\s+(SOLUTION|HIDDEN\s+TESTS)\b.*$", re.IGNORECASE)
 _MARK = re.compile(r"#+\s*(BEGIN|END)\s+(SOLUTION|HIDDEN\s+TESTS)\b", re.IGNORECASE)
@@ -20,10 +22,13 @@ _MARK = re.compile(r"#+\s*(BEGIN|END)\s+(SOLUTION|HIDDEN\s+TESTS)\b", re.IGNOREC
 def release(source: Any) -> tuple[Any, list[str]]:
     """The students' version of a notebook, and what its author should know. The notebook itself stays as it is.
 
-    Raises NotebookError, which names the cell, where a solution would be left in or metadata are not nbgrader's.
+    Raises NotebookError, which names the cell, where a solution would be left in, metadata are not nbgrader's, or what comes
+    back could not be graded.
     """
-    tasks = tasks_of(source)
     notebook, notes = deepcopy(source), []
+    notebook.cells = [cell for at, cell in enumerate(notebook.cells) if not _is_for_you(cell, at)]
+    tasks = tasks_of(notebook)
+    _check_asked(notebook, tasks)
     notebook.metadata.pop("widgets", None)
     for at, cell in enumerate(notebook.cells):
         _check_metadata(cell, at)
@@ -38,6 +43,11 @@ def release(source: Any) -> tuple[Any, list[str]]:
             cell.source = OPEN if cell.cell_type == "markdown" else STUB
         elif kind == "given" and cell.source != whole:
             raise NotebookError(f"{_place(cell, at)} holds a solution, but is no answer cell: nbgrader's metadata say so")
+        if kind in ("answer", "explain"):  # whatever else hangs on them may be a solution
+            cell.pop("attachments", None)
+            cell.metadata = type(cell.metadata)({key: cell.metadata[key] for key in OURS if key in cell.metadata})
+        elif cell.source != whole:
+            notes.append(f"{_place(cell, at)} has hidden tests: they are not run, for other cases are tried in grading anyway")
         if cell.cell_type == "code":
             cell.outputs, cell.execution_count = [], None
         if kind == "check":
@@ -90,12 +100,39 @@ def _given_notes(notebook: Any) -> list[str]:
     notes = []
     for at, cell in enumerate(notebook.cells):
         names = names_in([cell.source]) - known if cell.cell_type == "code" and role(cell) == "given" else ()
-        notes += [
-            f'{_place(cell, at)} uses fm.{name}, which is not in "uses": while homework is graded, that cell fails there'
-            for name in sorted(names)
-            if can_be_handed_out(name)
-        ]
+        for name in sorted(names):
+            why = 'is not in "uses"' if can_be_handed_out(name) else "is never handed out"
+            instead = "" if can_be_handed_out(name) else ": write its result down, as a list"
+            notes.append(
+                f"{_place(cell, at)} uses fm.{name}, which {why}: while homework is graded, the cell fails there{instead}"
+            )
     return notes
+
+
+def _is_for_you(cell: Any, at: int) -> bool:
+    tags = cell.metadata.get("tags")
+    if not isinstance(tags, list) or FOR_YOU not in tags:
+        return False
+    if role(cell) != "given":
+        raise NotebookError(f'{_place(cell, at)} is tagged "{FOR_YOU}", so students would not get it, but it is theirs')
+    return True
+
+
+def _check_asked(notebook: Any, tasks: list[Task]) -> None:
+    """Raise NotebookError for what ``grade`` could not hand out, or not judge."""
+    from fem_mesh.course.homework.room import check_uses
+
+    check_uses(homework_of(notebook)["uses"])
+    given = given_in(notebook)
+    for task in tasks:
+        cell = notebook.cells[task.at]
+        if role(cell) == "check":
+            try:
+                refuse_unreadable(cell.source)
+            except NotebookError as error:
+                raise NotebookError(f"{_place(cell, task.at)}: {error.message}") from None
+        for call in task.calls:
+            cases_of_call(call, 0, given)
 
 
 def _check_metadata(cell: Any, at: int) -> None:

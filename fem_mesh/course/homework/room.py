@@ -22,7 +22,7 @@ INSIDE = Path(__file__).with_name("inside")
 ALWAYS = ("MeshError", "Step", "grid_points", "random_points", "ring_points")
 PICTURES = ("DomainPlayground", "Picture", "Player", "Playground", "Trace", "play", "record")
 RUN = "fem_mesh.check.run"
-PREDICATES = "fem_mesh.predicates"  # is needed for two numbers by what makes points: homework may be about the rest
+PRUNED = ("fem_mesh.predicates", "fem_mesh.mesh.quality")  # are needed for a little: homework may be about the rest
 ALLOWED_ALGORITHM = "fem_mesh.algorithms.sweep"  # any triangulation, as bad as can be: what Lawson's flips begin with
 MESHING = (  # modules that do, or nearly do, what homework asks for
     "fem_mesh.algorithms.",
@@ -48,9 +48,9 @@ def furnish(room: Path, uses: Sequence[str], cases: dict[str, Any], box: Box, li
     modules = {RUN} | {module for home in handed_out.values() for module in closure(home)} | set(closure(RUN))
     for module in sorted(modules):
         _copy(module, room)
-    if PREDICATES in modules:
-        wanted = {name for name, home in handed_out.items() if home == PREDICATES} | _taken_from(PREDICATES, modules)
-        file = room / "fem_mesh" / "predicates.py"
+    for module in modules & set(PRUNED):
+        wanted = {name for name, home in handed_out.items() if home == module} | _taken_from(module, modules)
+        file = room / _path(module).relative_to(HOME.parent)
         file.write_text(pruned(file.read_text(encoding="utf-8"), wanted), encoding="utf-8")
     shutil.copyfile(INSIDE / "face.py", package / "__init__.py")
     shutil.copyfile(INSIDE / "verbs.py", package / "check" / "__init__.py")

@@ -142,7 +142,7 @@ def _inside(place: Place, path: str) -> str:
 
 
 def environment(box: Box, home: Path) -> dict[str, str]:
-    """All that a kernel learns of its surroundings."""
+    """The environment variables of a kernel."""
     folder = WORK if box.bwrap else str(home)
     threads = dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"), "1")  # each takes address space
     return {

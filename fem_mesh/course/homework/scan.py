@@ -42,7 +42,8 @@ USUAL = {
 }
 POWERFUL = {"eval", "exec", "compile", "__import__", "open", "globals", "locals", "vars", "setattr", "delattr", "breakpoint",
             "input", "get_ipython"}  # fmt: skip
-LONG = 200  # items of a list, or characters of a text, that somebody hardly types
+LONG = 200  # characters of a text that somebody hardly types
+MANY = 60  # numbers of a list, rows and all, or in a text
 MOST = 20  # lines told of one submission
 
 
@@ -73,8 +74,7 @@ def _lines(source: str, uses: set[str]) -> Iterator[tuple[int, str]]:
     try:
         tree = ast.parse(re.sub(r"(?m)^\s*[!%].*$", "pass", source))
     except (SyntaxError, ValueError, RecursionError, MemoryError):
-        yield 1, "is no Python"
-        return
+        return  # the task says so
     for node in ast.walk(tree):
         for what in _about(node, uses):
             yield int(getattr(node, "lineno", 1)), what
@@ -95,10 +95,12 @@ def _about(node: ast.AST, uses: set[str]) -> Iterator[str]:
             yield f"reaches for {node.attr}"
     elif isinstance(node, ast.Name) and node.id in POWERFUL:
         yield f"uses {node.id}"
-    elif isinstance(node, ast.List | ast.Tuple | ast.Set) and len(node.elts) > LONG:
-        yield f"holds a list of {len(node.elts)} items"
+    elif isinstance(node, ast.List | ast.Tuple | ast.Set):
+        items = sum(isinstance(inner, ast.Constant) for inner in ast.walk(node))
+        if items > MANY:
+            yield f"holds a list of {items} items"
     elif isinstance(node, ast.Constant) and isinstance(node.value, str | bytes) and _is_blob(node.value):
-        yield f"holds a text of {len(node.value)} characters without a space"
+        yield f"holds a text of {len(node.value)} characters that is no prose"
 
 
 def _about_module(name: str) -> str:
@@ -121,4 +123,5 @@ def _about_name(name: str, uses: set[str]) -> str:
 
 
 def _is_blob(text: str | bytes) -> bool:
-    return len(text) > LONG and len(text.split()) == 1
+    words = text.split()
+    return len(text) > LONG and (len(words) == 1 or sum(any(sign.isdigit() for sign in str(word)) for word in words) > MANY)

@@ -100,13 +100,13 @@ def by_a_careful_filter(a, b, c, d):
     return by_the_exact_centre(a, b, c, d)
 
 
-def det_and_permanent(a, b, c, d):
+def det_and_permanent(a, b, c, d, products=True):
     points = [(x - d[0], y - d[1]) for x, y in (a, b, c)]
     det = permanent = 0.0
     for i in range(3):
         (px, py), (qx, qy), (rx, ry) = points[i], points[(i + 1) % 3], points[(i + 2) % 3]
         det += (px * px + py * py) * (qx * ry - rx * qy)
-        permanent += (px * px + py * py) * (abs(qx * ry) + abs(rx * qy))
+        permanent += (px * px + py * py) * (abs(qx * ry) + abs(rx * qy) if products else abs(qx * ry - rx * qy))
     return det, permanent
 
 
@@ -200,6 +200,12 @@ def filter_by_a_product(a, b, c, d):
     return det > 0 if abs(det) > 2e-15 * abs(prod([*a, *b])) else by_translation(a, b, c, d)
 
 
+def filter_of_differences(a, b, c, d):
+    """The likeliest misreading: |bx cy - cx by| for |bx cy| + |cx by|."""
+    det, permanent = det_and_permanent(a, b, c, d, products=False)
+    return det > 0 if abs(det) > 2e-15 * permanent else by_translation(a, b, c, d)
+
+
 RIGHT = {
     "orient": [by_fractions, by_whole_numbers, by_decimals, by_an_array_of_fractions, by_recursion],
     "in_circle": [by_translation, by_four_rows, by_the_exact_centre, by_integers_in_an_array],
@@ -226,4 +232,5 @@ WRONG = [
     ("in_circle", filter_by_the_det, "since d lies "),
     ("in_circle", filter_without_the_fallback, ROUNDED),
     ("in_circle", filter_by_a_product, "since d lies "),
+    ("in_circle", filter_of_differences, 'case "points nearly on a line": in_circle('),
 ]

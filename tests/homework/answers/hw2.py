@@ -237,6 +237,25 @@ def lawson_of_turns(points, triangles):
             yield triangles
 
 
+def lawson_of_flips_that_turn(points, triangles):
+    """A flip may turn its triangles either way, as Task 1 says; then they are asked as they are."""
+    while True:
+        for t in triangles:
+            a, b, c = t
+            for edge, far in (((a, b), c), ((b, c), a), ((c, a), b)):
+                others = [v for v in far_corners(triangles, *edge) if v != far]
+                if others and fm.in_circle(*(points[v] for v in t), points[others[0]]):
+                    triangles = [s for s in triangles if not set(edge) <= set(s)]
+                    triangles += [(edge[0], far, others[0]), (edge[1], far, others[0])]
+                    yield triangles
+                    break
+            else:
+                continue
+            break
+        else:
+            return
+
+
 def lawson_of_edges(points, triangles):
     for state in with_a_stack(points, triangles):
         yield {frozenset(edge) for t in state for edge in combinations(t, 2)}
@@ -310,7 +329,12 @@ WRONG = [
     ("lawson", lawson_of_all_convex, "you flipped edge 1-3, but no vertex lies inside either circle"),
     ("lawson", lawson_at_the_end, "nothing has changed since the step before: yield after each flip, and only then"),
     ("lawson", lawson_returned, "returned a list of length 2, but it is to be a generator: `yield` the current state"),
-    ("lawson", lawson_of_turns, "raised MeshError: in_circle needs a counter-clockwise triangle"),
+    ("lawson", lawson_of_turns, "raised MeshError: in_circle needs a counter-clockwise triangle, but points "),
+    (
+        "lawson",
+        lawson_of_flips_that_turn,
+        "in_circle needs a counter-clockwise triangle, but points 2, 1, 3 run clockwise: swap two of them",
+    ),
     ("lawson", lawson_of_edges, "you yielded a list that holds (0, 1), which is no triangle (a, b, c)"),
     ("lawson", lawson_of_the_new, "of the convex hull is missing: the triangles must cover the hull"),
     ("lawson", lawson_with_the_start, "step 1: nothing has changed since the step before"),

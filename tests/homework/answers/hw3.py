@@ -173,6 +173,14 @@ def far_super_triangle(points):
     return with_a_triangle_at_the_horizon(points, far=1e4)
 
 
+def super_triangle_a_million_times_as_large(points):
+    return with_a_triangle_at_the_horizon(points, far=1e6)
+
+
+def super_triangle_a_billion_times_as_large(points):
+    return with_a_triangle_at_the_horizon(points, far=1e9)
+
+
 def super_triangle_left_in(points):
     return with_a_triangle_at_the_horizon(points, strict=False)
 
@@ -211,7 +219,7 @@ def bowyer_watson_that_keeps(points):
 
 
 def bowyer_watson_with_a_tolerance(points):
-    n, far = len(points), 1e5
+    n, far = len(points), 1e15
     places = [*points, (-far, -far), (far, -far), (0, far)]
     triangles = [(n, n + 1, n + 2)]
     for p in range(n):
@@ -277,6 +285,30 @@ def starts_with_the_first_three(points):
         yield [t for t in triangles if GHOST not in t]
 
 
+def forgets_the_line(points):
+    """Of the points on the first line only two get a triangle."""
+    k = next((k for k, p in enumerate(points) if fm.orient(points[0], points[1], p)), None)
+    if k is None:
+        return
+    a, b = (0, 1) if fm.orient(points[0], points[1], points[k]) > 0 else (1, 0)
+    triangles = [(a, b, k), (b, a, GHOST), (k, b, GHOST), (a, k, GHOST)]
+    for p in range(k, len(points)):
+        if p > k:
+            gone = [t for t in triangles if SOLVED["in_conflict"](points, t, points[p])]
+            triangles = [t for t in triangles if t not in gone] + [(u, v, p) for u, v in rim_of(gone)]
+        yield [t for t in triangles if GHOST not in t]
+
+
+def ghosts_only_last(points):
+    """Looks for the ghost in the last place only."""
+
+    def hit(t, p):
+        a, b = points[t[0]], points[t[1]]
+        return fm.in_circle(a, b, points[t[2]], p) if t[2] != GHOST else SOLVED["in_conflict"](points, t, p)
+
+    return grown(points, hit)
+
+
 def only_the_last(points):
     *_, last = [[], *with_ghosts(points)]
     yield last
@@ -319,6 +351,23 @@ WRONG = [
         far_super_triangle,
         'case "a flat hull: the circles there are huge", step 3: edge 0-1 of the convex hull is missing',
     ),
+    (
+        "bowyer_watson",
+        super_triangle_a_million_times_as_large,
+        "step 3: edge 0-1 of the convex hull is missing: the triangles must cover the hull: if you use a super-triangle, it is",
+    ),
+    (
+        "bowyer_watson",
+        super_triangle_a_billion_times_as_large,
+        "step 3: edge 0-1 of the convex hull is missing: the triangles must cover the hull: if you use a super-triangle, it is",
+    ),
+    (
+        "bowyer_watson",
+        forgets_the_line,
+        'case "the first points on a line", step 1: edge 3-4 of the convex hull is missing: the triangles must cover the hull: '
+        "if you use a super-triangle, it is too near; if ghosts, an edge of the hull has none",
+    ),
+    ("bowyer_watson", ghosts_only_last, "raised MeshError: in_circle needs a counter-clockwise triangle"),
     (
         "bowyer_watson",
         super_triangle_left_in,

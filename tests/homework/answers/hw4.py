@@ -23,7 +23,7 @@ def with_a_queue(points, triangles, segments):
 
 def mended_after_each_segment(points, triangles, segments):
     """In sets, and a state for each segment rather than for each flip."""
-    done = set()
+    done, random = set(), np.random.default_rng(1)
     for s in map(frozenset, segments):
         while True:
             crossing = sorted((e for e in edges_of(triangles) if cross(points, s, e)), key=sorted)
@@ -31,7 +31,7 @@ def mended_after_each_segment(points, triangles, segments):
             if not crossing:
                 break
             fewer = [e for e in possible if not cross(points, s, across(triangles, e))]
-            triangles = flip(triangles, (fewer or possible)[0] if fewer else possible[len(triangles) % len(possible)])
+            triangles = flip(triangles, fewer[0] if fewer else possible[random.integers(len(possible))])
         done.add(s)
         triangles = mended(points, triangles, done)
         yield {frozenset(t) for t in triangles}
@@ -53,34 +53,36 @@ def with_polygons(points, triangles, segments):
         a, b = s
         hit = [t for t in triangles if any(cross(points, s, e) for e in edges_of([t]))]
         triangles = [t for t in triangles if t not in hit]
-        directed = [(u, v) for t in (turned(points, t) for t in hit) for u, v in zip(t, (*t[1:], t[0]), strict=True)]
-        after = dict(edge for edge in directed if edge[::-1] not in directed)
-        for start, end in ((a, b), (b, a)):
-            chain = [start]
-            while chain[-1] != end:
-                chain.append(after[chain[-1]])
-            triangles += filled(points, chain)
+        right, left = banks(points, hit, a, b)
+        triangles += filled(points, [a, *right, b]) + filled(points, [b, *left[::-1], a])
         yield np.array(triangles)
         triangles = mended(points, triangles, done)
         yield np.array(triangles)
 
 
-def turned(points, t):
-    a, b, c = t
-    return (a, b, c) if fm.orient(points[a], points[b], points[c]) > 0 else (a, c, b)
+def banks(points, hit, a, b):
+    """The vertices on both sides of a segment, from triangle to triangle; one that juts out may come twice."""
+    left, right, waiting, front = [], [], list(hit), {a}
+    while True:
+        triangle = next(t for t in waiting if front <= set(t))
+        waiting.remove(triangle)
+        for v in set(triangle) - front:
+            if v == b:
+                return right, left
+            (left if fm.orient(points[a], points[b], points[v]) > 0 else right).append(v)
+        front = {left[-1], right[-1]}
 
 
 def filled(points, chain):
     """A polygon whose last side leads back to its start: the corner whose circle is empty, then what is left on both sides."""
-    first, *inner, last = chain
-    if not inner:
+    first, last = chain[0], chain[-1]
+    if len(chain) < 3:
         return []
-    best = inner[0]
-    for v in inner[1:]:
-        if fm.in_circle(points[last], points[first], points[best], points[v]):
-            best = v
-    k = chain.index(best)
-    return [(last, first, best), *filled(points, chain[: k + 1]), *filled(points, chain[k:])]
+    k = 1
+    for i in range(2, len(chain) - 1):
+        if fm.in_circle(points[last], points[first], points[chain[k]], points[chain[i]]):
+            k = i
+    return [(last, first, chain[k]), *filled(points, chain[: k + 1]), *filled(points, chain[k:])]
 
 
 # ---- carve, right --------------------------------------------------------------------------------------
@@ -219,6 +221,24 @@ def segments_waited_for(points, triangles, segments):
                 crossing.append(e)
 
 
+def segments_mended_once(points, triangles, segments):
+    """Every edge is looked at once; what a flip makes illegal again is left."""
+    last = triangles
+    for last in segments_not_mended(points, triangles, segments):
+        yield last
+    for e in sorted(edges_of(last) - set(map(frozenset, segments)), key=sorted):
+        if e in edges_of(last) and is_illegal(points, last, e):
+            last = flip(last, e)
+            yield last
+
+
+def segments_as_pairs(points, triangles, segments):
+    """Compares pairs with edges, which are frozensets: all segments are mended away again."""
+    *states, last = triangles, *segments_not_mended(points, triangles, segments)
+    yield from states[1:]
+    yield mended(points, last, set(map(tuple, segments)))
+
+
 def segments_only_listed(points, triangles, segments):
     yield segments
 
@@ -286,6 +306,18 @@ def carve_by_number(points, triangles, segments):
     return [i for i, t in enumerate(triangles) if t in inside]
 
 
+def carve_with_pairs(points, triangles, segments):
+    """Walls that are pairs, compared with edges, which are frozensets: no wall stops the flood."""
+    walls, out = set(map(tuple, segments)), set()
+    waiting = [t for t in triangles for e in edges_of([t]) if len(across(triangles, e)) == 1 and e not in walls]
+    while waiting:
+        t = waiting.pop()
+        if t not in out:
+            out.add(t)
+            waiting += [o for o in triangles for e in edges_of([t]) - walls if e <= set(o)]
+    return [t for t in triangles if t not in out]
+
+
 def carve_all(points, triangles, segments):
     return triangles
 
@@ -311,7 +343,14 @@ WRONG = [
         "which is no segment, should be flipped: vertex ",
     ),
     ("segments", segments_mended_away, "it ended, but segment 0-1 is no edge: edge 2-3 crosses it"),
-    ("segments", segments_of_any_shape, "is flat: its three corners lie on one line"),
+    (
+        "segments",
+        segments_of_any_shape,
+        'case "a segment across many edges", step 4: you flipped edge 14-15, but its quadrilateral 14, 17, 15, 13 is not',
+    ),
+    ("segments", segments_mended_once, "which is no segment, should be flipped: vertex "),
+    ("segments", segments_as_pairs, "it ended, but segment 0-1 is no edge: edge 2-3 crosses it"),
+    ("carve", carve_with_pairs, "triangle (0, 1, 3) lies inside, but you carved it away"),
     ("segments", segments_given_up, "it ended, but segment 0-1 is no edge: edges "),
     ("segments", segments_waited_for, "more than it can need: when does its loop end?"),
     ("segments", segments_only_listed, "step 1: you yielded a list that holds (1, 3), which is no triangle (a, b, c)"),

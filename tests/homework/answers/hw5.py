@@ -9,8 +9,9 @@ from answers import given_in
 
 GIVEN = given_in("hw5_ruppert")
 SOLVED = given_in("hw5_ruppert", solved=True)
-Delaunay, smallest_angle, inside = (GIVEN[name] for name in ("Delaunay", "smallest_angle", "inside"))
-circumcenter = SOLVED["circumcenter"]
+Delaunay, smallest_angle, inside, circumcenter = (
+    GIVEN[name] for name in ("Delaunay", "smallest_angle", "inside", "circumcenter")
+)
 
 # ---- encroached, right ---------------------------------------------------------------------------------
 
@@ -166,6 +167,11 @@ def encroached_by_whom(points, segments):
     return [v for v, p in enumerate(points) if any(fm.in_diametral_circle(*(points[w] for w in s), p) for s in segments)]
 
 
+def encroached_for_each_point(points, segments):
+    """As often as there are points inside."""
+    return [s for s in segments for p in points if fm.in_diametral_circle(*(points[v] for v in s), p)]
+
+
 def encroached_or_not(points, segments):
     return bool(with_a_dot_product(points, segments))
 
@@ -232,6 +238,74 @@ def a_wrong_determinant(points, segments, min_angle):
         return a[0] + (bb * cy - cc * by) / twice, a[1] + (cc * bx - bb * cx) / twice
 
     return with_centre(points, segments, min_angle, centre)
+
+
+def keeps_the_segment(points, segments, min_angle):
+    """A segment is split, but its halves do not take its place."""
+    mesh = Delaunay(points)
+    for _ in range(5):
+        hit = with_a_dot_product(mesh.points, segments)
+        if not hit:
+            return
+        mesh.add(midpoint(*(mesh.points[v] for v in hit[0])))
+        yield mesh.points, mesh.triangles
+
+
+def refines_outside(points, segments, min_angle):
+    """`inside` is forgotten."""
+    mesh, segments = Delaunay(points), list(segments)
+    for _ in range(60):
+        hit = with_a_dot_product(mesh.points, segments)
+        if not hit:
+            bad = [t for t in mesh.triangles if smallest_angle(*(mesh.points[v] for v in t)) < min_angle]
+            if not bad:
+                return
+            new = circumcenter(*(mesh.points[v] for v in bad[0]))
+            hit = with_a_dot_product([*mesh.points, new], segments)
+        if hit:
+            (a, b), m = hit[0], len(mesh.points)
+            new = midpoint(mesh.points[a], mesh.points[b])
+            segments = [s for s in segments if s != (a, b)] + [(a, m), (m, b)]
+        mesh.add(new)
+        yield mesh.points, mesh.triangles
+
+
+def a_forgotten_factor(points, segments, min_angle):
+    """2 is forgotten in the formula of the centre."""
+
+    def centre(a, b, c):
+        return tuple(2 * y - x for x, y in zip(a, circumcenter(a, b, c), strict=True))
+
+    return with_centre(points, segments, min_angle, centre)
+
+
+def twenty_built_in(points, segments, min_angle):
+    return with_centre(points, segments, 20, circumcenter)
+
+
+def only_segments_that_are_edges(points, segments, min_angle):
+    """A segment that is no edge of the triangles is not split."""
+    mesh, segments = Delaunay(points), list(segments)
+
+    def hit_in(places):
+        edges = {frozenset((t[i - 1], t[i])) for t in mesh.triangles for i in range(3)}
+        return [s for s in with_a_dot_product(places, segments) if frozenset(s) in edges]
+
+    for _ in range(60):
+        hit = hit_in(mesh.points)
+        if not hit:
+            found = inside(mesh.points, mesh.triangles, segments)
+            bad = [t for t in found if smallest_angle(*(mesh.points[v] for v in t)) < min_angle]
+            if not bad:
+                return
+            new = circumcenter(*(mesh.points[v] for v in bad[0]))
+            hit = hit_in([*mesh.points, new])
+        if hit:
+            (a, b), m = hit[0], len(mesh.points)
+            new = midpoint(mesh.points[a], mesh.points[b])
+            segments = [s for s in segments if s != (a, b)] + [(a, m), (m, b)]
+        mesh.add(new)
+        yield mesh.points, mesh.triangles
 
 
 def too_modest(points, segments, min_angle):
@@ -310,6 +384,7 @@ WRONG = [
     ),
     ("encroached", encroached_in_numbers, "you returned numbers: return the segments themselves, as pairs (a, b)"),
     ("encroached", encroached_by_whom, "you returned numbers: return the segments themselves, as pairs (a, b)"),
+    ("encroached", encroached_for_each_point, "is there more than once: one point inside is enough"),
     ("encroached", encroached_or_not, "you returned False, not the list of all segments"),
     (
         "ruppert",
@@ -319,6 +394,15 @@ WRONG = [
     ("ruppert", centres_that_encroach, "the new point 6 lies inside the circle of segment 1-5: split the segment instead"),
     ("ruppert", centroids, "but neither a vertex nor the centre of a bad triangle's circle lies inside its circle"),
     ("ruppert", a_wrong_determinant, "is neither the midpoint of a segment nor the centre of the circle of a triangle"),
+    (
+        "ruppert",
+        keeps_the_segment,
+        "step 2: the new point (2, 0) is vertex 5 again: once a segment is split, its halves take its place in the list",
+    ),
+    ("ruppert", refines_outside, ", which lies outside the domain: only triangles inside are refined"),
+    ("ruppert", a_forgotten_factor, "step 2: the new point (2, 0.5) is vertex 4 again"),
+    ("ruppert", twenty_built_in, 'case "two points close together", step '),
+    ("ruppert", only_segments_that_are_edges, "segment 4-5 is encroached upon by vertex "),
     ("ruppert", too_modest, "it ended, but triangle (1, 4, 5) has an angle of 14.0 degrees, below 20"),
     ("ruppert", too_eager, "but neither a vertex nor the centre of a bad triangle's circle lies inside its circle"),
     ("ruppert", splits_at_a_quarter, "step 1: the new point (1, 0) is neither the midpoint of a segment nor the centre"),

@@ -50,6 +50,7 @@ def limit(memory: int, seconds: int, file_size: int) -> None:
         (resource.RLIMIT_CPU, seconds),
         (resource.RLIMIT_FSIZE, file_size),
         (resource.RLIMIT_CORE, 0),
+        (resource.RLIMIT_NOFILE, 256),
     ):
         try:
             resource.setrlimit(kind, (most, most))
