@@ -14,12 +14,14 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from fem_mesh import textbook
+from fem_mesh.algorithms.adapt import adapt, mark
 from fem_mesh.algorithms.bowyer_watson import bowyer_watson
 from fem_mesh.algorithms.constrained_delaunay import constrained_delaunay, insert_segments
 from fem_mesh.algorithms.delaunay import delaunay
 from fem_mesh.algorithms.lawson import lawson
 from fem_mesh.algorithms.refine import refine
 from fem_mesh.algorithms.refining.watched import ruppert
+from fem_mesh.algorithms.smooth import smooth
 from fem_mesh.algorithms.sweep import any_triangulation
 from fem_mesh.domain.curves import Circle, Parametric
 from fem_mesh.domain.domain import Domain
@@ -39,8 +41,9 @@ from fem_mesh.domain.shapes import (
 )
 from fem_mesh.errors import MeshError
 from fem_mesh.files.endings import read, write
-from fem_mesh.mesh.mesh import Mesh, Refinement
+from fem_mesh.mesh.mesh import Mesh
 from fem_mesh.mesh.points import grid_points, random_points, ring_points
+from fem_mesh.mesh.refinement import Refinement
 from fem_mesh.mesh.validators import validate
 from fem_mesh.mesh.voronoi import Voronoi
 from fem_mesh.predicates import in_circle, in_diametral_circle, orient
@@ -72,6 +75,7 @@ __all__ = [
     "Step",
     "Trace",
     "Voronoi",
+    "adapt",
     "airfoil",
     "annulus",
     "any_triangulation",
@@ -89,6 +93,7 @@ __all__ = [
     "l_shape",
     "lawson",
     "letter",
+    "mark",
     "orient",
     "plate_with_hole",
     "play",
@@ -98,6 +103,7 @@ __all__ = [
     "refine",
     "ring_points",
     "ruppert",
+    "smooth",
     "square",
     "star",
     "textbook",

@@ -129,6 +129,15 @@ def many(n: int, thing: str) -> str:
     return f"{n} {thing}{'s' * (n != 1)}"
 
 
+def counted(n: int, thing: str) -> str:
+    """ "1,234 points", "1 point".
+
+    >>> counted(1234, "point")
+    '1,234 points'
+    """
+    return f"{n:,} {thing}{'s' * (n != 1)}"
+
+
 def _tuples(items: Iterable[Any]) -> tuple[Any, ...]:
     if isinstance(items, tuple) and (not items or isinstance(items[0], tuple)):
         return items

@@ -49,7 +49,27 @@ def write(thing: Domain | Mesh, path: str | os.PathLike[str]) -> tuple[str, ...]
     """Write a Mesh, or a Domain (.poly and .node only), to the file ``path``, whose ending decides (see ``read``).
 
     Returns a sentence for each thing that such files cannot keep, () if there is none. Coordinates are
-    kept to the last bit. An .ele file gets a .node file beside it.
+    kept to the last bit. An .ele file gets a .node file beside it. What is kept of a Mesh, there and back:
+
+    file, method           points    segments   boundaries     regions    segment_of
+    .vtu .vtk .xdmf .xmf   all       all        names          names      all
+    .msh                   all       all        first name     names      none
+    .inp                   all       all        words          words      none
+    .mesh                  all       all        first number   numbers    none
+    .ele                   all       none       none           names      none
+    .off .obj .ply         all       none       none           none       none
+    .stl                   corners   none       none           none       none
+    to_meshio              all       all        names          names      none
+    to_skfem               used      named      names          names      none
+    to_matplotlib          all       none       none           none       none
+
+    first : a segment in several boundaries is kept in the first of them
+    words : names as single words, "hole 0" as "hole_0"; numbers of regions may change
+    corners : each triangle's own, which are merged when read; used : those of triangles, numbered anew
+
+    In .msh names are physical groups (triangles without a region are in the group "no region", since some
+    programs leave out what is in no group), in .inp sets, in .vtu, .vtk and .xdmf an array of 0 and 1 over the
+    cells for each, "boundary: hole 0". The domain, its curves and ``merged_into`` are in no file.
 
     >>> import pathlib, tempfile
     >>> import fem_mesh as fm

@@ -1,7 +1,7 @@
 """Between a Mesh and meshio's: cells, and names in the several ways in which files hold them.
 
 arrays  a 0/1 array over all cells for each name, "boundary: inlet", "region 2: steel" (.vtu, .vtk, .xdmf)
-tags    a number for each cell, "gmsh:physical", and a name for each number (.msh)
+tags    a number for each cell, "gmsh:physical", and a name for each number (.msh): a physical group
 sets    lists of cells, by name (.inp)
 """
 
@@ -9,13 +9,13 @@ from __future__ import annotations
 
 import re
 import urllib.parse
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from fem_mesh.errors import MeshError
-from fem_mesh.files.names import name_number, number_names, number_regions
+from fem_mesh.files.names import name_number, name_regions, number_names, number_regions, number_sets
 from fem_mesh.mesh.mesh import Mesh
 
 if TYPE_CHECKING:
@@ -23,7 +23,11 @@ if TYPE_CHECKING:
 
 NOTHING = "(?!)"  # the pattern that no name has
 TAGS = ("regions", "gmsh:physical", "medit:ref")  # arrays of numbers of regions, the first there is
+NO_REGION = "no region"  # the group in .msh of triangles without one: FEniCS leaves out what is in no group
 UNSAFE = re.compile(r"[^!#$'()*+,\-./0-9:;=?@A-Z\[\]^_`a-z{|}~]")  # in the name of an array, percent-encoded
+UNSAFE_IN_XML = re.compile(r"[\"%&<>\x00-\x1f\x7f-\x9f\ud800-\udfff\ufffe\uffff]")
+ABAQUS = {"line": "T3D2", "triangle": "CPS3"}  # as Gmsh writes them
+LONGEST = 20  # characters of a number there
 ARRAY = re.compile(r"(?s)(boundary|region (\d+)): (.*)")
 IGNORED = ("vertex", "line", "triangle")  # cells that make no complaint
 
@@ -40,15 +44,21 @@ def to_meshio(mesh: Mesh) -> meshio.Mesh:
     return with_names(mesh)[0]
 
 
-def with_names(mesh: Mesh, forbidden: str = NOTHING) -> tuple[Any, list[str]]:
-    """``to_meshio(mesh)``, its names different from each other and without ``forbidden`` characters; and what that changed."""
+def with_names(
+    mesh: Mesh, forbidden: str = NOTHING, reserved: Iterable[str] = (), all_regions: bool = False
+) -> tuple[Any, list[str]]:
+    """``to_meshio(mesh)``, its names different from each other, none of them ``reserved``, without ``forbidden``
+    characters; and what that changed. With ``all_regions`` those without a name are "region 7".
+    """
     import meshio
 
     k = len(mesh.segments)
-    fitted, said = _fit([*mesh.boundaries, *mesh.region_names], forbidden)
-    boundaries, regions = fitted[: len(mesh.boundaries)], fitted[len(mesh.boundaries) :]
+    given = [rows for name, rows in mesh.boundaries.items() if name]
+    region_names = name_regions(mesh.region_names, mesh.regions) if all_regions else mesh.region_names
+    fitted, said = _fit([*filter(None, mesh.boundaries), *region_names], forbidden, reserved)
+    boundaries, regions = fitted[: len(given)], fitted[len(given) :]
     numbers = number_names(boundaries, "boundary", 1)
-    sets = {name: [rows, np.empty(0, np.int32)] for name, rows in zip(boundaries, mesh.boundaries.values(), strict=True)}
+    sets = {name: [rows, np.empty(0, np.int32)] for name, rows in zip(boundaries, given, strict=True)}
     tags, times = np.zeros(k, np.int32), np.zeros(k, np.int32)
     for name in boundaries[::-1]:  # the first wins
         tags[sets[name][0]] = numbers[name]
@@ -76,8 +86,13 @@ def with_names(mesh: Mesh, forbidden: str = NOTHING) -> tuple[Any, list[str]]:
 
 
 def with_tags(mesh: Mesh) -> tuple[Any, list[str]]:
-    """As the .msh files of Gmsh have it."""
-    data, said = with_names(mesh, r'["\\\x00-\x1f\x7f\ud800-\udfff]')
+    """As the .msh files of Gmsh have it: triangles without a region are in a group of their own."""
+    data, said = with_names(mesh, r'["\\\x00-\x1f\x7f\ud800-\udfff]', [NO_REGION])
+    tags = data.cell_data["gmsh:physical"][-1]
+    if not tags.all():
+        free = max(len(mesh.region_names), int(tags.max()) + 1)
+        tags[tags == 0] = free
+        data.field_data[NO_REGION] = np.array([free, 2])
     del data.cell_data["regions"]
     data.cell_sets = {}
     return data, said
@@ -92,27 +107,39 @@ def with_references(mesh: Mesh) -> tuple[Any, list[str]]:
 
 
 def with_sets(mesh: Mesh) -> tuple[Any, list[str]]:
-    """As Abaqus has it: sets of cells, whose names are single words."""
-    data, said = with_names(mesh, r"[^A-Za-z0-9_.-]")
+    """As Abaqus has it: sets of cells, whose names are single words; and its own words for types of cells."""
+    data, said = with_names(mesh, r"[^A-Za-z0-9_.-]", all_regions=True)
+    for block in data.cells:
+        block.type = ABAQUS[block.type]
     data.cell_data, data.field_data = {}, {}
-    return data, [sentence for sentence in said if not sentence.startswith("segment")]
+    said = [sentence for sentence in said if not sentence.startswith("segment")]
+    short = np.reshape([_shorten(x) for x in data.points.ravel().tolist()], data.points.shape)
+    rounded = int((short != data.points).any(axis=1).sum())
+    data.points = short
+    return data, said + [f"coordinates of {rounded:,} points are rounded to {LONGEST} characters each"] * (rounded > 0)
 
 
-def with_arrays(mesh: Mesh) -> tuple[Any, list[str]]:
-    """As VTK has it: arrays over the cells."""
+def with_arrays(mesh: Mesh, unsafe: re.Pattern[str] = UNSAFE_IN_XML) -> tuple[Any, list[str]]:
+    """As VTK has it: arrays over the cells. In their names ``unsafe`` characters are percent-encoded."""
     data, _ = with_names(mesh)
     k, m = len(mesh.segments), len(mesh.triangles)
     arrays = {"regions": [np.zeros(k, np.int32), mesh.regions]}
     if (mesh.segment_of >= 0).any():
         arrays["segment_of"] = [mesh.segment_of, np.full(m, -1, np.int32)]
     for name, rows in mesh.boundaries.items():
-        arrays[_quoted(f"boundary: {name}")] = [np.isin(np.arange(k), rows).astype(np.int32), np.zeros(m, np.int32)]
+        arrays[f"boundary: {name}"] = [np.isin(np.arange(k), rows).astype(np.int32), np.zeros(m, np.int32)]
     for r, name in enumerate(mesh.region_names):
         if r and name:
-            arrays[_quoted(f"region {r}: {name}")] = [np.zeros(k, np.int32), (mesh.regions == r).astype(np.int32)]
-    data.cell_data = {key: [np.array(values) for values in blocks[0 if k else 1 :]] for key, blocks in arrays.items()}
+            arrays[f"region {r}: {name}"] = [np.zeros(k, np.int32), (mesh.regions == r).astype(np.int32)]
+    quoted = {unsafe.sub(_percent, name): blocks for name, blocks in arrays.items()}
+    data.cell_data = {name: [np.array(values) for values in blocks[0 if k else 1 :]] for name, blocks in quoted.items()}
     data.cell_sets, data.field_data = {}, {}
     return data, []
+
+
+def with_plain_arrays(mesh: Mesh) -> tuple[Any, list[str]]:
+    """The same for the older .vtk files, in which names are single words; VTK decodes them."""
+    return with_arrays(mesh, UNSAFE)
 
 
 def triangles_only(mesh: Mesh) -> tuple[Any, list[str]]:
@@ -121,18 +148,27 @@ def triangles_only(mesh: Mesh) -> tuple[Any, list[str]]:
     return meshio.Mesh(np.column_stack([mesh.points, np.zeros(len(mesh.points))]), [("triangle", mesh.triangles)]), []
 
 
-def _fit(names: list[str], forbidden: str) -> tuple[list[str], list[str]]:
+def _fit(names: list[str], forbidden: str, reserved: Iterable[str]) -> tuple[list[str], list[str]]:
     fitted: list[str] = []
+    taken = set(reserved)
     for name in names:
         clean = re.sub(forbidden, "_", name)
-        more = (f"{clean}_{i}" for i in range(2, len(names) + 2))
-        fitted.append(next(new for new in (clean, *more) if not new or new not in fitted))
+        more = (f"{clean}_{i}" for i in range(2, len(names) + len(taken) + 2))
+        fitted.append(next(new for new in (clean, *more) if not new or new not in taken))
+        taken.add(fitted[-1])
     changed = zip(names, fitted, strict=True)
     return fitted, [f"the name {name!r} is written as {new!r}" for name, new in changed if name != new]
 
 
-def _quoted(name: str) -> str:
-    return UNSAFE.sub(lambda match: urllib.parse.quote(match[0], errors="surrogatepass"), name)
+def _shorten(x: float) -> float:
+    """The nearest number, or nearly, that takes ``LONGEST`` characters."""
+    if len(repr(x)) <= LONGEST:
+        return x
+    return next(y for digits in range(15, 0, -1) if len(repr(y := float(f"{x:.{digits}e}"))) <= LONGEST)
+
+
+def _percent(match: re.Match[str]) -> str:
+    return urllib.parse.quote(match[0], errors="surrogatepass")
 
 
 # ---- from meshio -----------------------------------------------------------------------------------
@@ -206,7 +242,7 @@ def _sets(data: Any) -> dict[str, dict[str, np.ndarray]]:
     """For each name the lines and the triangles in its set, by their row among all lines, all triangles."""
     found = {}
     for name, blocks in data.cell_sets.items():
-        if name.startswith("gmsh:"):
+        if not name or name.startswith("gmsh:"):
             continue
         rows: dict[str, list[Any]] = {"line": [], "triangle": []}
         offset = dict.fromkeys(rows, 0)
@@ -255,11 +291,8 @@ def _regions(data: Any, arrays: dict[str, str], sets: Any, m: int) -> tuple[np.n
     for key in TAGS:
         tags = _whole(data, key, "triangle", m)
         if tags is not None:
+            for number in [number for number, name in names.items() if name == NO_REGION]:
+                tags[tags == number] = 0
+                del names[number]
             return *number_regions(tags, names), ""
-    tags, several = np.zeros(m, np.int64), 0
-    chosen = {name: rows["triangle"] for name, rows in sets.items() if len(rows["triangle"])}
-    for number, rows in reversed(list(enumerate(chosen.values(), 1))):
-        several += int((tags[rows] != 0).sum())
-        tags[rows] = number
-    note = f"{several:,} triangles are in several sets, and in the region of the first" if several else ""
-    return *number_regions(tags, dict(enumerate(chosen, 1))), note
+    return number_sets({name: rows["triangle"] for name, rows in sets.items() if len(rows["triangle"])}, m)

@@ -23,6 +23,7 @@ from fem_mesh.files.exchange import (
     to_meshio,
     triangles_only,
     with_arrays,
+    with_plain_arrays,
     with_references,
     with_sets,
     with_tags,
@@ -66,14 +67,17 @@ class Format:
     options: dict[str, Any] = field(default_factory=dict)
 
 
+WHOLE_VTK = rb"\A# vtk DataFile[^\n]*\n[^\n]*\n(?:(?!ASCII)|(?s:.*\n\Z))"  # text ends with its last line
+ASCII = {"binary": False}  # Gmsh reads no other .vtk files, and VTK no cell arrays that meshio writes in version 5.1
+BY_ABAQUS = {"float_fmt": "", "translate_cell_names": False}  # CalculiX takes 20 characters a number, so the shortest
 XDMF = Format("xdmf", with_arrays, (MERGED,), options={"data_format": "XML"})
 FORMATS = {
-    ".msh": Format("gmsh", with_tags, (SEGMENT_OF, MERGED), rb"\$EndElements", "gmsh22", {"binary": False}),
+    ".msh": Format("gmsh", with_tags, (SEGMENT_OF, MERGED), rb"\$EndElements", "gmsh22", ASCII),
     ".vtu": Format("vtu", with_arrays, (MERGED,)),
-    ".vtk": Format("vtk", with_arrays, (MERGED,)),
+    ".vtk": Format("vtk", with_plain_arrays, (MERGED,), WHOLE_VTK, "vtk42", ASCII),
     ".xdmf": XDMF,
     ".xmf": XDMF,
-    ".inp": Format("abaqus", with_sets, (SEGMENT_OF, MERGED)),
+    ".inp": Format("abaqus", with_sets, (SEGMENT_OF, MERGED), options=BY_ABAQUS),
     ".mesh": Format("medit", with_references, (BOUNDARY_NAMES, REGION_NAMES, SEGMENT_OF, MERGED), rb"(?m)^\s*End\s*\Z"),
     ".off": Format("off", triangles_only, ALL_BUT_TRIANGLES, rb"(?m)^\s*\d+ +(\d+) +\d+"),
     ".obj": Format("obj", triangles_only, ALL_BUT_TRIANGLES),

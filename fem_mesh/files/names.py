@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 
@@ -57,6 +57,33 @@ def number_regions(numbers: np.ndarray, names: Mapping[int, str]) -> tuple[np.nd
     regions = np.searchsorted(found, numbers) + 1
     regions[numbers == 0] = 0
     return regions.astype(np.int32), ("", *(name_number(k, "region", names) for k in found))
+
+
+def name_regions(names: Sequence[str], regions: np.ndarray) -> list[str]:
+    """The name of each number of a region: "region 7" where triangles have the number 7, and it has no name.
+
+    >>> name_regions(["", "steel"], np.array([0, 1, 3]))
+    ['', 'steel', '', 'region 3']
+    """
+    used = np.unique(regions).tolist()
+    named = [*names, *[""] * (max(used, default=0) + 1 - len(names))]
+    for number in used:
+        named[number] = named[number] or name_number(number, "region", {})
+    return named
+
+
+def number_sets(sets: Mapping[str, np.ndarray], m: int) -> tuple[np.ndarray, tuple[str, ...], str]:
+    """``regions`` and ``region_names`` of ``m`` triangles in named ``sets`` of them, and a note on those in several.
+
+    >>> number_sets({"steel": np.array([0, 1]), "air": np.array([1, 3])}, 4)[:2]
+    (array([1, 1, 0, 2], dtype=int32), ('', 'steel', 'air'))
+    """
+    numbers, tags, several = number_names(sets, "region", 1), np.zeros(m, np.int64), 0
+    for name in reversed(numbers):  # the first wins
+        several += int((tags[sets[name]] != 0).sum())
+        tags[sets[name]] = numbers[name]
+    note = f"{several:,} triangles are in several sets, and in the region of the first" if several else ""
+    return *number_regions(tags, {number: name for name, number in numbers.items()}), note
 
 
 def _number_in(name: str, word: str) -> int:

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
 from functools import cached_property
 from types import MappingProxyType
 from typing import Any
@@ -15,35 +13,8 @@ from fem_mesh.errors import MeshError
 from fem_mesh.mesh import quality, validators
 from fem_mesh.mesh.locator import Locator
 from fem_mesh.mesh.points import as_coordinates, as_numbers, as_points
+from fem_mesh.mesh.refinement import Refinement
 from fem_mesh.mesh.voronoi import Voronoi, voronoi_of
-
-
-@dataclass(frozen=True, eq=False)
-class Refinement:
-    """What ``refine`` achieved, and what it had to leave.
-
-    complete : every triangle keeps the bounds, but for those at a small input angle, which no mesher can mend
-    added : points added
-    left : the triangles that miss a bound, int32 (k,)
-    why : the reason for each of them: "small input angle", "budget" or "precision"
-    off_curve : added points that had to stay on a chord, since the way to their curve was not free
-    min_angle : the bound that was asked for, in degrees
-    """
-
-    complete: bool
-    added: int
-    left: np.ndarray
-    why: tuple[str, ...]
-    off_curve: int
-    min_angle: float
-
-    def __repr__(self) -> str:
-        state = "complete" if self.complete else "incomplete"
-        facts = [f"{state}, {self.added:,} point{'s' * (self.added != 1)} added"]
-        facts += [f"{count:,} triangle{'s' * (count != 1)} left ({why})" for why, count in Counter(self.why).items()]
-        facts += [f"{self.off_curve:,} of the points left on a chord"] if self.off_curve else []
-        return "Refinement: " + ", ".join(facts)
-
 
 MOST_REGIONS = 65_536  # numbers of regions stay below this
 
@@ -272,7 +243,7 @@ class Mesh:
     # ---- files ------------------------------------------------------------------------------------
 
     def write(self, path: Any) -> tuple[str, ...]:
-        """Write the mesh to ``path``; the ending decides the format. Returns what that format cannot keep, in sentences."""
+        """Write the mesh to ``path``, whose ending says how. Returns what is lost, in sentences (``fm.write`` has a table)."""
         from fem_mesh.files.endings import write
 
         return write(self, path)
@@ -282,6 +253,39 @@ class Mesh:
         from fem_mesh.files.formats import to_meshio
 
         return to_meshio(self)
+
+    @classmethod
+    def from_meshio(cls, data: Any) -> Mesh:
+        """The mesh that a ``meshio.Mesh`` holds (see ``fem_mesh.files.exchange``)."""
+        from fem_mesh.files.formats import from_meshio
+
+        return from_meshio(data)
+
+    def to_skfem(self) -> Any:
+        """The mesh as a ``skfem.MeshTri`` with boundaries and subdomains, on used points (see ``fem_mesh.files.solvers``)."""
+        from fem_mesh.files.solvers import to_skfem
+
+        return to_skfem(self)
+
+    @classmethod
+    def from_skfem(cls, m: Any) -> Mesh:
+        """The mesh that a ``skfem.MeshTri`` holds: named facets are its segments, subdomains its regions."""
+        from fem_mesh.files.solvers import from_skfem
+
+        return from_skfem(m)
+
+    def to_matplotlib(self) -> Any:
+        """The mesh as a ``matplotlib.tri.Triangulation``: points and triangles."""
+        from fem_mesh.files.solvers import to_matplotlib
+
+        return to_matplotlib(self)
+
+    @classmethod
+    def from_matplotlib(cls, triangulation: Any) -> Mesh:
+        """The mesh that a ``matplotlib.tri.Triangulation`` holds: the triangles that its mask leaves."""
+        from fem_mesh.files.solvers import from_matplotlib
+
+        return from_matplotlib(triangulation)
 
     # ---- showing ---------------------------------------------------------------------------------
 

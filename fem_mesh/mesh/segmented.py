@@ -10,7 +10,8 @@ import numpy as np
 
 from fem_mesh.kernel import call
 from fem_mesh.mesh.constrained import close_boundaries
-from fem_mesh.mesh.mesh import Mesh, Refinement
+from fem_mesh.mesh.mesh import Mesh
+from fem_mesh.mesh.refinement import Refinement
 from fem_mesh.mesh.workspace import COUNT, NEXT, SEGMENTS, Workspace, list_triangles
 
 Names = str | tuple[str, ...]  # of a row: one, "" for none, or several

@@ -62,6 +62,7 @@ KINDS = {  # of steps: the role whose colour a kind wears where all steps are se
     "remove": "doomed", "encroached": "doomed", "skinny": "doomed", "large": "doomed", "long": "doomed",
     "insert": "new", "flip": "new", "segment": "new", "split": "new", "steiner": "new", "lift": "new", "move": "point",
     "merge": "edge", "reject": "edge", "skip": "edge", "precision": "edge", "budget": "edge",
+    "solve": "visited", "estimate": "visited", "mark": "doomed", "refine": "new", "sweep": "new",
 }  # fmt: skip
 
 STILL = {"inside", "curve", "hole", "region", "wrong", "wrong edge", "expected", "expected edge"}  # that no widget draws

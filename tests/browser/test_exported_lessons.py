@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 LESSONS = sorted((Path(__file__).parents[2] / "notebooks").glob("*.ipynb"))
-PLAYERS = {"00": 1, "01": 0, "02": 3, "03": 2, "04": 2, "05": 1}
+PLAYERS = {"00": 1, "01": 0, "02": 3, "03": 2, "04": 2, "05": 1, "06": 0, "07": 2}
 
 
 @pytest.mark.parametrize("path", LESSONS, ids=lambda path: path.stem)

@@ -49,7 +49,8 @@ from fem_mesh.domain.curves import as_pair
 from fem_mesh.errors import MeshError
 from fem_mesh.kernel import call
 from fem_mesh.mesh.halfedge import GHOST, next_edge
-from fem_mesh.mesh.mesh import Mesh, Refinement
+from fem_mesh.mesh.mesh import Mesh
+from fem_mesh.mesh.refinement import Refinement
 from fem_mesh.mesh.segmented import Segmented
 from fem_mesh.mesh.workspace import NEXT, SEGMENTS
 
