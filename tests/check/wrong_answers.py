@@ -19,6 +19,7 @@ from right_answers import (
     encroached_with_lists,
     flip_with_lists,
     lawson_with_lists,
+    next_vertex,
     on_loops,
     ruppert_from_scratch,
     segments_by_flips,
@@ -724,6 +725,23 @@ def angles_only(points, segments, min_angle):
     yield points, cdt(points, segments)
 
 
+@wrong("ruppert", "case a side that is no edge at first: it ended, but segment 4-5 is encroached upon by vertex 8")
+def only_segments_that_are_edges(points, segments, min_angle):
+    """A segment that is missing among the triangles of the hull is never split, so it stays missing."""
+    points, pieces = [*points], [*segments]
+    while True:
+        triangles = cdt(points, pieces, carved=False)
+        yield points, triangles
+        edges = {frozenset(edge) for t in triangles for edge in edges_of(t)}
+        missing = [piece for piece in pieces if frozenset(piece) not in edges]
+        pieces = [piece for piece in pieces if piece not in missing]
+        inside = carve_by_rays(points, triangles, pieces + missing)
+        new = next_vertex(points, pieces, inside, min_angle, worst=True)
+        if new is None:
+            return
+        points, pieces = [*points, new], pieces + missing
+
+
 @wrong("ruppert", "it ended, but triangle (...) has an angle of ... degrees, below 20")
 def encroachment_only(points, segments, min_angle):
     def choose(points, pieces, triangles, bound):
@@ -806,6 +824,13 @@ wrong_mesh(
     domain=fm.Domain(KITE, [(0, 1), (1, 2), (2, 3), (3, 0), (0, 2)]),
 )  # fmt: skip
 wrong_mesh("there is a hole beside edge", FRAME, RING)
+CELLS = [(a, b) for a in range(4) for b in range(2)]  # of a plate, its hole filled, and one as large elsewhere
+PLATE = [t for a, b in CELLS if (a, b) != (2, 0) for v in [5 * b + a] for t in [(v, v + 1, v + 6), (v, v + 6, v + 5)]]
+wrong_mesh(
+    "edge ... has triangles on both sides, but on the domain's segment from (1, 0) to (1, 1) the domain has one",
+    [(x, y) for y in range(3) for x in range(5)], PLATE,
+    domain=fm.Domain.from_loops([(0, 0), (1, 0), (1, 1), (2, 1), (2, 0), (4, 0), (4, 2), (0, 2)]),
+)  # fmt: skip
 
 
 # ---- what all have in common: wrong in itself --------------------------------------------------------
