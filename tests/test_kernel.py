@@ -142,6 +142,7 @@ def test_without_numba_everything_still_runs_and_gives_the_same_mesh(tmp_path):
     assert run(blocked, tmp_path) == run(TRIANGULATE, tmp_path)
 
 
+@pytest.mark.exhaustive
 def test_no_array_is_read_out_of_bounds(tmp_path):
     checked = run(TRIANGULATE, tmp_path, NUMBA_BOUNDSCHECK="1", NUMBA_CACHE_DIR=str(tmp_path / "cache"))
     assert checked == run(TRIANGULATE, tmp_path)

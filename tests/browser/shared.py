@@ -1,5 +1,6 @@
 """A notebook that several tests share, since opening one takes seconds; and its widgets as a reader meets them."""
 
+import time
 from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
@@ -37,8 +38,9 @@ class Desk:
         return view
 
     def comes_true(self, expression, code=""):
-        """Wait until something is true in Python: of what the page tells, a part may still be on its way."""
-        for _ in range(100):
+        """Wait until something is true in Python: part of what the page tells is on its way, or has to be compiled for."""
+        end = time.monotonic() + 120
+        while time.monotonic() < end:
             if python(self.page, f"bool({expression})", code=code) == "True":
                 return
             self.page.wait_for_timeout(50)
