@@ -49,7 +49,7 @@ def test_drawing_opens_no_window_and_leaves_no_figure_behind(trace):
     assert plt.get_fignums() == before
 
 
-@pytest.mark.parametrize("options", [{}, {"dark": True}, {"circles": False}, {"numbers": True, "legend": False}])
+@pytest.mark.parametrize("options", [{"circles": False}, {"dark": True, "numbers": True, "legend": False}])
 def test_every_step_can_be_drawn_in_every_way(trace, options):
     for k in range(len(trace)):
         trace.draw(k, **options)

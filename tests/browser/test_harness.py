@@ -8,6 +8,7 @@ import pytest
 from .latency import measure
 from .notebook import cell, open_notebook, python, restart_kernel, run_all, run_cell, save, set_theme, wait_until
 
+pytestmark = pytest.mark.exhaustive
 WIDGET = '''
 import time, anywidget, traitlets
 

@@ -13,7 +13,7 @@ OURS = """() => cells.flatMap((cell, i) => {
 })"""
 
 
-@pytest.mark.parametrize("lesson", ["01_empty_circle", "02_lawson_flips"])
+@pytest.mark.parametrize("lesson", ["00_live_coding", "01_empty_circle", "02_lawson_flips"])
 def test_a_lesson_runs_to_its_end_without_an_error_and_without_the_network(lesson, page, seen):
     open_notebook(page, path=LESSONS / f"{lesson}.ipynb", name=f"{lesson}.ipynb")
     run_all(page)

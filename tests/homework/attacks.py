@@ -324,9 +324,11 @@ def orient(a, b, c):
 }  # fmt: skip
 
 SLOW = {  # those that take long, or are much like others: graded with -m exhaustive
-    "50 GB in children", "a daemon", "a shell", "answers only the easy case", "asks the instructor", "cleared",
-    "ctypes", "deep answer", "endless function", "endless function that catches all", "fills the disk", "floods",
-    "lifts its limits", "memory without a name", "one giant message", "patches run", "qhull", "qhull by file",
-    "ready-made sign", "real answer in the answer cell", "retyped check", "saved outputs", "scipy by path", "segfault",
-    "shuts itself down", "sleeps for ever in C", "strange answers",
+    "50 GB in children", "a daemon", "a shell", "answer of another check", "answers only the easy case",
+    "asks the instructor", "cleared", "ctypes", "deep answer", "easier check", "endless function",
+    "endless function that catches all", "fills the disk", "floods", "forged in the answer cell", "garbage on the wire",
+    "lifts its limits", "matplotlib", "memory without a name", "no checks", "one giant message", "patches run",
+    "patches the check", "qhull", "qhull by file", "ready-made sign", "real answer in the answer cell",
+    "replaces an answer later", "retyped check", "saved outputs", "scipy by path", "segfault", "shuts itself down",
+    "sleeps for ever in C", "strange answers", "textbook", "triangle", "two answers",
 }  # fmt: skip

@@ -208,7 +208,7 @@ def test_answers_learnt_by_heart_are_right_at_home_alone(attacked):
 @NEEDS
 def test_none_stops_the_run_and_honest_work_counts(attacked):
     assert attacked.result.exit_code == 0, attacked.result.output
-    assert len(attacked.scores()) == len(list(attacked.submissions.iterdir())) > 30
+    assert len(attacked.scores()) == len(list(attacked.submissions.iterdir())) > 20
     assert attacked.scores()["zz honest"] == [2, 3, None, 0]
     assert all(told["sandboxed"] for told in attacked.results().values())
 
