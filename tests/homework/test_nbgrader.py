@@ -71,6 +71,7 @@ def test_nbgraders_autograder_gives_the_same_points(course, monkeypatch):
         student: {task["name"]: task["score"] for task in told["tasks"] if task["name"].startswith("check")}
         for student, told in course.results().items()
     }
+    assert [list(ours[student].values()) for student in students] == [[2, 3], [0, 3], [0, 0]]
     assert autograded(course.folder / "desk", course.source, students, monkeypatch) == ours
 
 
