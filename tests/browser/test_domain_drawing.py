@@ -8,6 +8,7 @@ import pytest
 from fem_mesh.watch.domain_playground.sketch import SHAPES
 
 from .board import L_SHAPE, PIXEL, SETUP, Board, cleared
+from .notebook import js
 from .shared import until
 
 NOTEBOOK = [SETUP, "pg"]
@@ -183,6 +184,33 @@ def test_a_second_view_shows_the_same_and_either_may_draw(board):
         board.plane.move(3, 1.8)
     board.has_corner(3, 3, 1.8)
     other.reads("triangles", board.triangles.text_content())
+
+
+def test_a_loop_under_way_stays_when_another_view_asks_for_a_mesh(board):
+    other = board.desk.widget(1, "domain-playground", Board)
+    other.draw(L_SHAPE[:3], close=False)
+    ask_for_a_steeper_angle(board, 25)
+    board.desk.page.wait_for_timeout(600)  # the other view has asked what happened, and was told
+    for corner in [*L_SHAPE[3:], L_SHAPE[0]]:
+        other.plane.click(*corner)
+    board.has_corners(6)
+
+
+def test_a_loop_that_is_closed_while_a_view_catches_up_stays(board):
+    other = board.desk.widget(1, "domain-playground", Board)
+    other.draw(L_SHAPE, close=False)
+    ask_for_a_steeper_angle(board, 25)
+    js(board.desk.page, "() => { session.session.kernel.requestExecute({code: 'import time; time.sleep(3)'}); }")
+    board.desk.page.wait_for_timeout(600)  # it has asked what happened; there is no answer yet
+    other.plane.click(*L_SHAPE[0])
+    board.has_corners(6)
+
+
+def ask_for_a_steeper_angle(board, degrees):
+    board.labelled("smallest angle").evaluate(
+        "(slider, degrees) => { slider.value = degrees; slider.dispatchEvent(new Event('input', {bubbles: true})); }", degrees
+    )
+    board.desk.comes_true(f"pg.min_angle == {degrees}")
 
 
 def test_it_fits_a_narrow_column(board):

@@ -105,13 +105,18 @@ class DomainPlayground {
   }
 
   begin({ drawn, box, shapes, to }) {
-    const caughtUp = this.begun && to === "hello";
-    this.drawing.begin(drawn, { first: !this.begun || caughtUp });
+    if (this.begun && to === "hello") return this.follow(drawn);
+    this.drawing.begin(drawn, { first: !this.begun });
     this.begun = true;
     this.acknowledged = this.drawing.version;
     this.pencil.rest();
     this.controls.showShapes(shapes);
-    if (!caughtUp) this.setBox(box);
+    this.setBox(box);
+  }
+
+  // Take over what another view drew, unless the hand here is ahead of it.
+  follow(drawn) {
+    if (this.drawing.version === this.acknowledged && this.drawing.follow(drawn)) this.pencil.rest();
   }
 
   setBox([left, right, bottom, top]) {

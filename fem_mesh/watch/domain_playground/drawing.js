@@ -56,6 +56,14 @@ export class Drawing {
     Object.assign(this, { start, points, segments, open: [], spots: first ? this.spots : [] });
   }
 
+  // Take over what is closed elsewhere; the loop under way here stays. Returns whether there was anything new.
+  follow({ start, points, segments }) {
+    const there = { start, points, segments };
+    if (JSON.stringify(there) === JSON.stringify(this.closed)) return false;
+    Object.assign(this, there);
+    return true;
+  }
+
   clear() {
     this.remember();
     Object.assign(this, { start: "", points: [], segments: [], open: [], spots: [] });
