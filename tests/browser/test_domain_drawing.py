@@ -8,7 +8,6 @@ import pytest
 from fem_mesh.watch.domain_playground.sketch import SHAPES
 
 from .board import L_SHAPE, PIXEL, SETUP, Board, cleared
-from .notebook import js
 from .shared import until
 
 NOTEBOOK = [SETUP, "pg"]
@@ -199,11 +198,41 @@ def test_a_loop_under_way_stays_when_another_view_asks_for_a_mesh(board):
 def test_a_loop_that_is_closed_while_a_view_catches_up_stays(board):
     other = board.desk.widget(1, "domain-playground", Board)
     other.draw(L_SHAPE, close=False)
+    rest_after_the_next_answer(board, 2)
     ask_for_a_steeper_angle(board, 25)
-    js(board.desk.page, "() => { session.session.kernel.requestExecute({code: 'import time; time.sleep(3)'}); }")
     board.desk.page.wait_for_timeout(600)  # it has asked what happened; there is no answer yet
     other.plane.click(*L_SHAPE[0])
     board.has_corners(6)
+
+
+def test_a_mesh_that_is_asked_for_again_while_python_compiles_takes_nothing_back(board):
+    board.desk.widget(1, "domain-playground", Board)
+    board.desk.do("from fem_mesh.algorithms import ahead; ready, ahead.is_ready = ahead.is_ready, lambda: False")
+    try:
+        board.draw(L_SHAPE)
+        board.has_corners(6)
+        board.press("b")
+        board.desk.page.wait_for_timeout(1000)
+        rest_after_the_next_answer(board, 1.3)
+        ask_for_a_steeper_angle(board, 25)
+        board.desk.page.wait_for_timeout(900)  # the other view waits for an answer, and wants a whole mesh by now
+        board.plane.click(1.5, 1.5)
+        board.desk.comes_true("len(pg.spots) == 1")
+        board.desk.page.wait_for_timeout(1000)
+        assert board.desk.ask("len(pg.spots)") == "1"
+    finally:
+        board.desk.do("ahead.is_ready = ready")
+
+
+def rest_after_the_next_answer(board, seconds):
+    """Python answers the page once more, and then nothing for a while."""
+    rest = f"""
+import time
+def rest(*_):
+    pg.on_msg(rest, remove=True)
+    time.sleep({seconds})
+pg.on_msg(rest)"""
+    board.desk.do(rest)
 
 
 def ask_for_a_steeper_angle(board, degrees):

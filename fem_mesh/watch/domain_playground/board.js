@@ -19,7 +19,7 @@ const NOTHING = { x: [], y: [], triangles: [] };
 
 class DomainPlayground {
   constructor(root, model, style) {
-    const bounds = { min_angle: 20, size: null, encroachment: "lens" };
+    const bounds = { min_angle: model.get("min_angle"), size: model.get("size"), encroachment: model.get("encroachment") };
     Object.assign(this, { root, model, style, bounds, drawing: new Drawing(), mesh: null, told: {}, extent: PAGE[1], brush: false, gridShown: false });
     Object.assign(this, { me: Math.random().toString(36).slice(2), serial: 0, waiting: false, again: false, acknowledged: 0, begun: false });
     this.build();
@@ -30,10 +30,9 @@ class DomainPlayground {
     this.stops = [
       watchTheme((dark) => this.setDark(dark)), watchSize(this.canvas, () => this.draw()),
       listen(model, "msg:custom", (message, buffers) => this.hear(message, buffers)),
-      ...["min_angle", "size", "encroachment", "spots"].map((trait) => listen(model, `change:${trait}`, () => this.adopt())),
       hideStandIn(model.get("key"), root),
     ];
-    this.adopt();
+    this.controls.show(bounds);
     this.send({ type: "hello" });
   }
 
@@ -76,12 +75,12 @@ class DomainPlayground {
     this.extent = message.extent ?? this.extent;
     if (buffers.length) this.take(message, buffers);
     else if (!message.refusal) this.mesh = null;
+    this.adopt(message);
     this.readOut();
     this.draw();
     if (this.again && !this.waiting) this.ask();
-    else this.adopt();
     clearTimeout(this.later);
-    if (message.provisional) this.later = setTimeout(() => this.ask(), AGAIN);
+    if (message.provisional) this.later = setTimeout(() => this.waiting || this.send({ type: "ask" }), AGAIN); // as Python has it
   }
 
   hearAnswer() {
@@ -90,18 +89,20 @@ class DomainPlayground {
     if (this.status.textContent === NO_ANSWER) this.say("");
   }
 
-  catchUp({ to }) {
-    if (to !== "ask") return;
+  catchUp(message) {
+    if (message.to !== "ask") return;
+    this.adopt(message);
+    this.redraw();
     clearTimeout(this.behind);
     this.behind = setTimeout(() => this.waiting || this.send({ type: "hello" }), CATCH_UP);
   }
 
-  // What Python sets is shown, unless the hand here is ahead of it.
-  adopt() {
-    if (this.waiting || this.again) return;
-    for (const name of Object.keys(this.bounds)) this.bounds[name] = this.model.get(name);
-    this.drawing.spots = this.model.get("spots");
-    this.controls.show(this.bounds);
+  // The bounds that Python has are shown, unless the hand here is ahead of it.
+  adopt({ asked }) {
+    if (!asked || this.waiting || this.again) return;
+    const { spots, ...bounds } = asked;
+    [this.bounds, this.drawing.spots] = [bounds, spots];
+    this.controls.show(bounds);
   }
 
   begin({ drawn, box, shapes, to }) {
@@ -126,7 +127,7 @@ class DomainPlayground {
     this.cell = unit * (width < 2 * unit ? 1 : width < 5 * unit ? 2 : 5);
   }
 
-  take({ bounded, min_angle: bound }, buffers) {
+  take({ bounded, asked: { min_angle: bound } }, buffers) {
     const [places, triangles, segments, encroached, smallest] = buffers.map(bytesOf);
     const flat = new Float64Array(places), n = flat.length / 2, angles = new Float32Array(smallest);
     const least = angles.reduce((a, b) => Math.min(a, b), 180);
@@ -215,14 +216,14 @@ class DomainPlayground {
   }
 
   readOut() {
-    const { points, triangles, state, refusal, histogram, min_angle: bound } = this.told, { mesh } = this;
+    const { points, triangles, state, refusal, histogram, asked } = this.told, { mesh } = this;
     if (!refusal) {
       this.points.textContent = counted(mesh ? points : 0, "point");
       this.triangles.textContent = counted(mesh ? triangles : 0, "triangle");
       this.smallest.textContent = mesh?.triangles.length ? `smallest angle ${mesh.least.toFixed(1)}°` : "";
       this.encroached.textContent = mesh?.encroached.length ? `${counted(mesh.encroached.length / 2, "segment")} encroached` : "";
       this.state.textContent = mesh ? state : "";
-      this.histogram.show(mesh ? histogram : [], bound);
+      this.histogram.show(mesh ? histogram : [], asked?.min_angle);
     }
     this.root.classList.toggle("fem-refused", Boolean(refusal));
     this.refusal.hidden = !refusal;

@@ -241,7 +241,7 @@ class DomainPlayground(Live):
             "state": say_state(mesh) + compiles,
             "code": self.as_code(),
             "bounded": self._is_bounded,
-            "min_angle": self.min_angle,
+            "asked": {name: getattr(self, name) for name in BOUNDS},
         }
         content |= {"provisional": self._most < MOST_POINTS, "extent": self._extent}
         if mesh is not None:
