@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from fem_mesh.algorithms.delaunay import delaunay
 from fem_mesh.check.pictures import beside, panel
 from fem_mesh.check.reading import Row, read_triangles
+from fem_mesh.check.transcript import Run
 from fem_mesh.check.triangulation import (
     Edge,
     Triangulation,
@@ -23,9 +24,6 @@ from fem_mesh.check.verdict import Picture, Wrong, at_step
 from fem_mesh.mesh.points import as_points
 from fem_mesh.mesh.validators import on_a_line
 from fem_mesh.predicates import in_circle, in_circle_sign, orient
-
-if TYPE_CHECKING:
-    from fem_mesh.check.judge import Run
 
 
 def judge_bowyer_watson(case: dict[str, Any], run: Run) -> None:

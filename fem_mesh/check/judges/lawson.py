@@ -6,10 +6,11 @@ import functools
 import operator
 from collections import Counter
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from fem_mesh.check.pictures import beside, panel
 from fem_mesh.check.reading import Row, read_triangles
+from fem_mesh.check.transcript import Run
 from fem_mesh.check.triangulation import (
     Edge,
     Triangle,
@@ -24,9 +25,6 @@ from fem_mesh.check.triangulation import (
 from fem_mesh.check.verdict import Picture, Wrong, at_step
 from fem_mesh.mesh.points import as_points
 from fem_mesh.predicates import in_circle, in_circle_sign, orient
-
-if TYPE_CHECKING:
-    from fem_mesh.check.judge import Run
 
 
 def judge_lawson(case: dict[str, Any], run: Run) -> None:

@@ -4,21 +4,19 @@ from __future__ import annotations
 
 import itertools
 from collections import Counter
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from fem_mesh.algorithms.constrained_delaunay import constrained_delaunay
 from fem_mesh.check.pictures import beside, panel
 from fem_mesh.check.reading import read_state
+from fem_mesh.check.transcript import Run
 from fem_mesh.check.triangulation import Edge, Triangulation, bad_edges, check_valid, check_whole, edge_of
 from fem_mesh.check.verdict import Wrong
 from fem_mesh.domain.domain import Domain
 from fem_mesh.mesh.points import as_points
 from fem_mesh.mesh.quality import angles
-
-if TYPE_CHECKING:
-    from fem_mesh.check.judge import Run
 
 ROOM = 1e-9  # in degrees, and as a share of lengths
 

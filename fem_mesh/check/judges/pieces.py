@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from fem_mesh.check.pictures import beside, panel
 from fem_mesh.check.reading import describe, read_triangles
+from fem_mesh.check.transcript import Run
 from fem_mesh.check.triangulation import Edge, Triangle, Triangulation, check_once, edge_of, say_edge
 from fem_mesh.check.verdict import Wrong
 from fem_mesh.mesh.points import as_points
 from fem_mesh.predicates import in_circle, in_circle_sign, orient
-
-if TYPE_CHECKING:
-    from fem_mesh.check.judge import Run
 
 
 def judge_flip(case: dict[str, Any], run: Run) -> None:

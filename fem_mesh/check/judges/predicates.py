@@ -4,14 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from fem_mesh.check.reading import describe
+from fem_mesh.check.transcript import Run
 from fem_mesh.check.verdict import Picture, Wrong
 from fem_mesh.predicates import in_circle, orient
-
-if TYPE_CHECKING:
-    from fem_mesh.check.judge import Run
 
 SMALL = 1e-9  # a determinant below it is what tolerances and rounding hide
 Point = Sequence[float]

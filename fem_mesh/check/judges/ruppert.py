@@ -7,7 +7,7 @@ the cases have, sides, circles) is not.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -16,6 +16,7 @@ from fem_mesh.algorithms.delaunay import delaunay
 from fem_mesh.check.judges.segments import is_inside, toggling
 from fem_mesh.check.pictures import beside, panel
 from fem_mesh.check.reading import read_rows, read_state
+from fem_mesh.check.transcript import Run
 from fem_mesh.check.triangulation import (
     Edge,
     Triangulation,
@@ -30,9 +31,6 @@ from fem_mesh.domain.domain import Domain
 from fem_mesh.mesh.points import as_points
 from fem_mesh.mesh.quality import angles, circumcenters
 from fem_mesh.predicates import in_diametral_circle, in_diametral_circle_sign, orient
-
-if TYPE_CHECKING:
-    from fem_mesh.check.judge import Run
 
 ROOM = 1e-7  # in degrees, and as a share of lengths
 Pieces = dict[Edge, bool]  # the sub-segments, and whether who crosses one changes sides

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from fem_mesh.check.judges.lawson import find_flip
 from fem_mesh.check.pictures import beside, panel
 from fem_mesh.check.reading import read_triangles
+from fem_mesh.check.transcript import Run
 from fem_mesh.check.triangulation import (
     Edge,
     Triangle,
@@ -28,9 +29,6 @@ from fem_mesh.domain.domain import Domain
 from fem_mesh.mesh.points import as_points
 from fem_mesh.mesh.validators import do_cross
 from fem_mesh.predicates import orient
-
-if TYPE_CHECKING:
-    from fem_mesh.check.judge import Run
 
 
 def judge_segments(case: dict[str, Any], run: Run) -> None:
