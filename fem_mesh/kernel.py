@@ -33,6 +33,7 @@ LAST = 64  # events from here on are a generator's last word: the caller has to 
 EVENTS_A_CALL = 50_000  # compiled work returns to Python this often, for Ctrl-C and progress
 EVENTS_IN_PYTHON = 30_000  # a run that takes more than these (about a second) is compiled, however small it began
 SMALL = 3_000  # below this size a first call runs in plain Python rather than wait for a compiler
+CONSTANT = (int, float, str, tuple)  # what a kernel may find in capitals
 PATIENCE = 2.0  # seconds of compiling before a line says so
 
 _kernels: list[Callable[..., Any]] = []
@@ -249,17 +250,29 @@ def _note_source(function: Callable[..., Any]) -> None:
 
 
 def _fingerprint(function: Callable[..., Any]) -> str:
-    """A hash of every module that holds kernels: an edited kernel must not meet a cached driver."""
+    """A hash of all that this kernel's compiled code depends on: an edited kernel must not meet a cached driver; and of
+    what else was imported nothing is compiled anew."""
     _note_source(function)
     digest = hashlib.sha256()
-    for name, source in sorted(_sources.items()):
-        if source is not None:
-            digest.update(source)
-            continue
-        for f in [*_kernels, function]:  # their code must do
+    for name, a_kernel in sorted(_called(function).items()):
+        source = _sources[name]
+        for f in [*_kernels, function] if source is None else ():  # their code must do
             if f.__module__ == name:
                 digest.update(f.__code__.co_code + repr(f.__code__.co_consts).encode())
+        constants = sorted(item for item in a_kernel.__globals__.items() if item[0].isupper() and isinstance(item[1], CONSTANT))
+        digest.update((source or b"") + repr(constants).encode())
     return digest.hexdigest()
+
+
+def _called(function: Callable[..., Any]) -> dict[str, Callable[..., Any]]:
+    """Each module with kernels that this one may call, and one of them."""
+    kernels, found, new = set(_kernels), dict[str, Callable[..., Any]](), [function]
+    while new:  # ends: each module once
+        f = new.pop()
+        if f.__module__ not in found:
+            found[f.__module__] = f
+            new += [known for known in f.__globals__.values() if inspect.isfunction(known) and known in kernels]
+    return found
 
 
 _numba_module: Any = False

@@ -174,15 +174,38 @@ EDITED = """
 """
 
 
-def test_an_edited_kernel_never_meets_a_stale_compiled_driver(tmp_path):
-    rule = tmp_path / "rule.py"
-    factor = "from fem_mesh.kernel import kernel\n@kernel\ndef factor():\n    return {}\n"
-    before = factor + "@kernel\ndef double(a):\n    return a[0] * factor()\n"
+@pytest.mark.parametrize("place", ["rule", "factors", "limits"])
+def test_an_edited_kernel_never_meets_a_stale_compiled_driver(place, tmp_path):
+    """What is edited stands in the kernel's own module, in that of a kernel it calls, or is a constant from elsewhere."""
     printed = []
     for value in (2.0, 3.0):
-        rule.write_text(before.format(value))
+        values = {"rule": 1.0, "factors": 1.0, "limits": 1.0, place: value}
+        kernels = "from fem_mesh.kernel import kernel\nfrom limits import MOST\n"
+        factor = f"@kernel\ndef factor():\n    return {values['factors']}\n"
+        double = f"from factors import factor\n@kernel\ndef double(a):\n    return a[0] * factor() * MOST * {values['rule']}\n"
+        for name, code in {
+            "limits": f"MOST = {values['limits']}",
+            "factors": kernels + factor,
+            "rule": kernels + double,
+        }.items():
+            (tmp_path / f"{name}.py").write_text(code)
         printed.append(run(EDITED.format(folder=str(tmp_path)), tmp_path, NUMBA_CACHE_DIR=str(tmp_path / "cache")))
     assert printed == ["2.0", "3.0"]
+
+
+def test_what_else_was_imported_changes_nothing_in_what_is_cached(tmp_path):
+    alone = """
+    from fem_mesh import kernel
+    from fem_mesh.algorithms.ruppert import refine_mesh
+    print(kernel._name_of_driver(refine_mesh))
+    """
+    everything = """
+    import importlib, pkgutil, fem_mesh, fem_mesh.kernel
+    for module in pkgutil.walk_packages(fem_mesh.__path__, "fem_mesh."):
+        importlib.import_module(module.name)
+    fem_mesh.kernel.kernel(lambda a: a)
+    """
+    assert run(alone, tmp_path) == run(textwrap.dedent(everything) + textwrap.dedent(alone), tmp_path)
 
 
 COUNTING = """
