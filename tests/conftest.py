@@ -4,6 +4,8 @@ from hypothesis import settings
 settings.register_profile("default", deadline=None, max_examples=25, derandomize=True)
 settings.register_profile("exhaustive", deadline=None, max_examples=2000)
 
+TOGETHER = ("tests/browser/", "notebooks/")
+
 
 def pytest_configure(config):
     chosen = "exhaustive" if config.option.markexpr == "exhaustive" else "default"
@@ -20,3 +22,15 @@ def pytest_ignore_collect(collection_path, config):
 def nothing_compiles_ahead(monkeypatch):
     """No widget of a test starts to compile in the background."""
     monkeypatch.setattr("fem_mesh.algorithms.ahead.compile_ahead", lambda: None)
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config, log):
+    """Modules stay together; and so do all of a browser's tests, which share it, and all notebooks."""
+    from xdist.scheduler import LoadScopeScheduling
+
+    class Rooms(LoadScopeScheduling):
+        def _split_scope(self, nodeid):
+            return next((room for room in TOGETHER if nodeid.startswith(room)), None) or super()._split_scope(nodeid)
+
+    return Rooms(config, log) if config.getvalue("dist") == "loadscope" else None
