@@ -255,7 +255,7 @@ ctypes.string_at(0)
     "shuts itself down": (WRONG + """
 get_ipython().kernel.do_shutdown(True)
 raise SystemExit
-""", LOST),
+""", None),  # it goes, or goes on: that depends on its version
     "floods": (WRONG + """
 while True: print('x' * 10000)
 """, LOST),
