@@ -1,6 +1,8 @@
 """The playground in Python: what the pointer does, and what it tells the browser, without one."""
 
 import itertools
+import sys
+import threading
 
 import listening
 import numpy as np
@@ -288,3 +290,28 @@ def test_the_voronoi_diagram_that_is_drawn_is_that_of_the_mesh(points):
     lines = np.frombuffer(buffers[-1], "<f8").reshape(-1, 2, 2)
     assert message["voronoi"]
     assert len(lines) == len(heard.playground.mesh.voronoi().edges) > 0
+
+
+def test_a_click_may_come_while_a_cell_adds_points():
+    """JupyterLab hands messages over in a thread of their own."""
+    playground, rng = fm.Playground(), np.random.default_rng(2)
+    places = rng.random((2, 120, 2)).tolist()
+
+    def click():
+        for x, y in places[1]:
+            playground._answer(playground, {"type": "add", "x": x, "y": y}, [])
+
+    clicks = threading.Thread(target=click, daemon=True)
+    before = sys.getswitchinterval()
+    sys.setswitchinterval(1e-4)
+    try:
+        clicks.start()
+        for x, y in places[0]:
+            playground.add(x, y)
+            playground.mesh.validate()
+        clicks.join(60)
+    finally:
+        sys.setswitchinterval(before)
+    assert not clicks.is_alive()
+    assert sorted(playground.points.tolist()) == sorted(places[0] + places[1])
+    playground.mesh.validate(delaunay=True)

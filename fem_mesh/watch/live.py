@@ -6,8 +6,11 @@ alive; it is what remains in an exported page, in a notebook opened again, and w
 
 from __future__ import annotations
 
+import functools
+import threading
 import zlib
-from typing import Any
+from collections.abc import Callable
+from typing import Any, ParamSpec, TypeVar
 
 import traitlets
 from anywidget import AnyWidget
@@ -15,7 +18,24 @@ from IPython.display import display
 
 from fem_mesh.watch.front import css
 
+P = ParamSpec("P")
+T = TypeVar("T")
+
 VIEW = "application/vnd.jupyter.widget-view+json"
+
+_changes = threading.RLock()  # one for all widgets: they may be linked, and two locks could wait for each other
+
+
+def undisturbed(method: Callable[P, T]) -> Callable[P, T]:
+    """A method that works while no other thread does: JupyterLab hands a page's messages over in a thread of their own,
+    so a click may come while a cell is running."""
+
+    @functools.wraps(method)
+    def alone(*args: P.args, **kwargs: P.kwargs) -> T:
+        with _changes:
+            return method(*args, **kwargs)
+
+    return alone
 
 
 class Live(AnyWidget):

@@ -19,7 +19,7 @@ from fem_mesh.mesh.quality import cocircular_edges
 from fem_mesh.steps import Step
 from fem_mesh.trace import Trace
 from fem_mesh.watch.front import PLAYGROUND, module
-from fem_mesh.watch.live import Live
+from fem_mesh.watch.live import Live, undisturbed
 from fem_mesh.watch.page import html_of_picture
 from fem_mesh.watch.svg import svg_of_mesh
 
@@ -88,16 +88,19 @@ class Playground(Live):
     # ---- what there is ---------------------------------------------------------------------------
 
     @property
+    @undisturbed
     def points(self) -> np.ndarray:
         """The points, float64 (n, 2)."""
         return self._live.points
 
     @property
+    @undisturbed
     def mesh(self) -> Mesh:
         """The triangulation as it stands."""
         return self._live.mesh()
 
     @property
+    @undisturbed
     def trace(self) -> Trace:
         """Every step since the playground was last begun anew."""
         trace = Trace()
@@ -107,6 +110,7 @@ class Playground(Live):
         trace.mesh = self.mesh
         return trace
 
+    @undisturbed
     def as_code(self) -> str:
         """The lines that make this playground again."""
         rows = ",\n".join(f"    ({x!r}, {y!r})" for x, y in self.points.tolist())
@@ -127,6 +131,7 @@ class Playground(Live):
         """Move point ``i``."""
         return self._change(lambda: self._live.move(i, x, y))
 
+    @undisturbed
     def begin(self, points: Any = ()) -> None:
         """Begin anew with these points."""
         given = as_points(points)
@@ -157,6 +162,7 @@ class Playground(Live):
             self._steps += self._live.add(x, y)
         self._said = self._steps[-1].caption if self._steps else "click to add a point"
 
+    @undisturbed
     def _change(self, change: Callable[[], list[Step]]) -> str:
         self._drop()
         state = self._state()
@@ -184,6 +190,7 @@ class Playground(Live):
         while len(self._done) > 1 and sum(map(_weight, self._done)) > MOST_KEPT:  # ends: one is left
             del self._done[0]
 
+    @undisturbed
     def _go_back(self, here: list[Any], there: list[Any]) -> None:
         self._drop()
         if here:
@@ -219,6 +226,7 @@ class Playground(Live):
 
     # ---- the browser -----------------------------------------------------------------------------
 
+    @undisturbed
     def _answer(self, _widget: Any, message: dict[str, Any], _buffers: Any) -> None:
         actions: dict[str, Callable[[], Any]] = {
             "all": self._greet,
@@ -270,6 +278,7 @@ class Playground(Live):
         left, right, bottom, top = self.box
         return right - left, top - bottom
 
+    @undisturbed
     def _send_all(self) -> None:
         points, triangles = self.points.astype("<f8"), self._live.triangles.astype("<i4")
         self._tell({"type": "all"}, [points.tobytes(), triangles.tobytes()])
@@ -285,10 +294,12 @@ class Playground(Live):
         self.send(message, buffers)
         self.version += 1
 
+    @undisturbed
     def still(self, key: str) -> str:
         svg = svg_of_mesh(self.mesh, repr(self), circles=self.circles, numbers=self.numbers, voronoi=self.voronoi)
         return html_of_picture(svg, repr(self), key, NOTE)
 
+    @undisturbed
     def __repr__(self) -> str:
         return repr(self.mesh).replace("Mesh", "Playground", 1) if len(self.points) else "Playground: no points yet"
 

@@ -24,7 +24,7 @@ from fem_mesh.trace import Trace
 from fem_mesh.watch.domain_playground.sketch import SHAPES, Sketch, number, places, wrapped
 from fem_mesh.watch.domain_playground.tell import arrays_of, encroached_segments, say_state
 from fem_mesh.watch.front import DOMAIN_PLAYGROUND, css, module
-from fem_mesh.watch.live import Live
+from fem_mesh.watch.live import Live, undisturbed
 from fem_mesh.watch.page import html_of_picture
 from fem_mesh.watch.svg import svg_of_mesh
 from fem_mesh.watch.wire import as_data
@@ -106,6 +106,7 @@ class DomainPlayground(Live):
     # ---- what is drawn, and its mesh ---------------------------------------------------------------
 
     @property
+    @undisturbed
     def trace(self) -> Trace | None:
         """The run that makes the mesh, step by step, up to 5,000 steps; None without a domain."""
         if self._trace is None and self.domain is not None:
@@ -113,6 +114,7 @@ class DomainPlayground(Live):
             self._trace = record(steps, MOST_STEPS)
         return self._trace
 
+    @undisturbed
     def as_code(self) -> str:
         """The lines of Python that make this domain and this mesh again."""
         if self.domain is None:
@@ -177,11 +179,13 @@ class DomainPlayground(Live):
         self.set_trait("mesh", mesh)
 
     @traitlets.observe(*BOUNDS)
+    @undisturbed
     def _bounds_changed(self, _change: Any) -> None:
         if self._opened:
             self._update(most=MOST_POINTS if ahead.is_ready() else self._most)
 
     @traitlets.observe("domain")
+    @undisturbed
     def _domain_changed(self, change: Any) -> None:
         if change["new"] is not self._domain:
             self._sketch = Sketch() if change["new"] is None else self._begin(change["new"])
@@ -198,6 +202,7 @@ class DomainPlayground(Live):
         self._starts[sketch.start] = domain
         return sketch
 
+    @undisturbed
     def _answer(self, _widget: Any, message: dict[str, Any], _buffers: Any) -> None:
         kind, serial = message["type"], message.get("serial")
         try:
@@ -274,6 +279,7 @@ class DomainPlayground(Live):
 
     # ---- showing -----------------------------------------------------------------------------------
 
+    @undisturbed
     def still(self, key: str) -> str:
         svg = "" if self.mesh is None else svg_of_mesh(self.mesh, repr(self), numbers=False)
         return html_of_picture(svg, f"{self!r}; {say_state(self.mesh)}" if svg else repr(self), key, NOTE)
