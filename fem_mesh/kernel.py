@@ -33,7 +33,7 @@ LAST = 64  # events from here on are a generator's last word: the caller has to 
 EVENTS_A_CALL = 50_000  # compiled work returns to Python this often, for Ctrl-C and progress
 EVENTS_IN_PYTHON = 30_000  # a run that takes more than these (about a second) is compiled, however small it began
 SMALL = 3_000  # below this size a first call runs in plain Python rather than wait for a compiler
-CONSTANT = (int, float, str, tuple)  # what a kernel may find in capitals
+CONSTANT = (int, float, str, tuple, np.generic)  # what a kernel may find in capitals
 PATIENCE = 2.0  # seconds of compiling before a line says so
 
 _kernels: list[Callable[..., Any]] = []
@@ -250,28 +250,32 @@ def _note_source(function: Callable[..., Any]) -> None:
 
 
 def _fingerprint(function: Callable[..., Any]) -> str:
-    """A hash of all that this kernel's compiled code depends on: an edited kernel must not meet a cached driver; and of
-    what else was imported nothing is compiled anew."""
+    """A hash of every module with kernels that this one may call, and of the constants (in capitals) there: an edited
+    kernel must not meet a cached driver; and of what else was imported nothing is compiled anew."""
     _note_source(function)
     digest = hashlib.sha256()
-    for name, a_kernel in sorted(_called(function).items()):
+    for name, kernels in sorted(_called(function).items()):
         source = _sources[name]
-        for f in [*_kernels, function] if source is None else ():  # their code must do
-            if f.__module__ == name:
-                digest.update(f.__code__.co_code + repr(f.__code__.co_consts).encode())
-        constants = sorted(item for item in a_kernel.__globals__.items() if item[0].isupper() and isinstance(item[1], CONSTANT))
+        for f in kernels if source is None else ():  # their code must do
+            digest.update(f.__code__.co_code + repr((f.__code__.co_names, f.__code__.co_consts)).encode())
+        named = list(kernels[0].__globals__.items())  # a list: a cell may be adding names
+        constants = sorted((key, repr(value)) for key, value in named if key.isupper() and isinstance(value, CONSTANT))
         digest.update((source or b"") + repr(constants).encode())
     return digest.hexdigest()
 
 
-def _called(function: Callable[..., Any]) -> dict[str, Callable[..., Any]]:
-    """Each module with kernels that this one may call, and one of them."""
-    kernels, found, new = set(_kernels), dict[str, Callable[..., Any]](), [function]
+def _called(function: Callable[..., Any]) -> dict[str, list[Callable[..., Any]]]:
+    """The kernels of each module that this one may reach: by a name, as a module's attribute, or enclosed."""
+    kernels, found, new = dict.fromkeys([*_kernels, function]), dict[str, list[Callable[..., Any]]](), [function.__module__]
     while new:  # ends: each module once
-        f = new.pop()
-        if f.__module__ not in found:
-            found[f.__module__] = f
-            new += [known for known in f.__globals__.values() if inspect.isfunction(known) and known in kernels]
+        name = new.pop()
+        if name in found:
+            continue
+        found[name] = [f for f in kernels if f.__module__ == name]
+        known = list(found[name][0].__globals__.values())
+        known += [cell.cell_contents for f in found[name] for cell in f.__closure__ or ()]
+        known += [value for module in known if inspect.ismodule(module) for value in list(vars(module).values())]
+        new += [value.__module__ for value in known if inspect.isfunction(value) and value in kernels]
     return found
 
 

@@ -26,7 +26,7 @@ def nothing_compiles_ahead(monkeypatch):
 
 @pytest.hookimpl(optionalhook=True)
 def pytest_xdist_make_scheduler(config, log):
-    """Modules stay together; and so do all of a browser's tests, which share it, and all notebooks."""
+    """Of a whole run, modules stay together; and so do all tests in a browser, which they share, and all notebooks."""
     from xdist.scheduler import LoadScopeScheduling
 
     class Rooms(LoadScopeScheduling):

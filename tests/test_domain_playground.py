@@ -5,6 +5,7 @@ import os
 import pickle
 import subprocess
 import sys
+import threading
 import time
 from pathlib import Path
 
@@ -508,3 +509,23 @@ def test_steps_that_cannot_be_had_are_answered(monkeypatch):
 def test_spots_that_are_no_triples_are_refused(spots):
     with pytest.raises(traitlets.TraitError):
         fm.DomainPlayground(spots=spots)
+
+
+def test_a_bound_that_a_cell_sets_waits_for_the_answer_to_a_page(monkeypatch):
+    """JupyterLab hands messages over in a thread of their own."""
+    playground, begun = fm.DomainPlayground(fm.square()), threading.Event()
+
+    def slow(*arguments, **options):
+        begun.set()
+        time.sleep(0.2)
+        return fm.refine(*arguments, **options)
+
+    monkeypatch.setattr(module, "refine", slow)
+    ask = {"type": "ask", "serial": "a 1", "min_angle": 25}
+    page = threading.Thread(target=playground._answer, args=(playground, ask, []))
+    page.start()
+    assert begun.wait(10)
+    playground.size = 0.1
+    assert len(playground.mesh.triangles) > 100
+    page.join()
+    assert (playground.min_angle, playground.size) == (25, 0.1)

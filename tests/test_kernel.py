@@ -193,6 +193,29 @@ def test_an_edited_kernel_never_meets_a_stale_compiled_driver(place, tmp_path):
     assert printed == ["2.0", "3.0"]
 
 
+ATTRIBUTE = "import factors\n@kernel\ndef double(a):\n    return a[0] * factors.factor()\n"
+ENCLOSED = """
+def make():
+    from factors import factor
+    @kernel
+    def double(a):
+        return a[0] * factor()
+    return double
+double = make()
+"""
+
+
+@pytest.mark.parametrize("rule", [ATTRIBUTE, ENCLOSED], ids=["attribute", "enclosed"])
+def test_a_kernel_is_seen_to_be_edited_however_it_is_reached(rule, tmp_path):
+    printed = []
+    for value in (2.0, 3.0):
+        first = "from fem_mesh.kernel import kernel\n"
+        (tmp_path / "factors.py").write_text(f"{first}@kernel\ndef factor():\n    return {value}\n")
+        (tmp_path / "rule.py").write_text(first + rule)
+        printed.append(run(EDITED.format(folder=str(tmp_path)), tmp_path, NUMBA_CACHE_DIR=str(tmp_path / "cache")))
+    assert printed == ["2.0", "3.0"]
+
+
 def test_what_else_was_imported_changes_nothing_in_what_is_cached(tmp_path):
     alone = """
     from fem_mesh import kernel

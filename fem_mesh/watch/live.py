@@ -44,6 +44,14 @@ class Live(AnyWidget):
     _css = css()
     key = traitlets.Unicode().tag(sync=True)  # ties the widget to its still picture
 
+    @undisturbed
+    def __setattr__(self, name: str, value: Any) -> None:
+        super().__setattr__(name, value)  # a trait that a cell sets finds no other change half made
+
+    @undisturbed
+    def set_state(self, sync_data: dict[str, Any]) -> None:
+        super().set_state(sync_data)
+
     def still(self, key: str) -> str:
         """HTML that stands in for the widget where ``key`` is not alive."""
         raise NotImplementedError

@@ -12,7 +12,7 @@ from fem_mesh.recording import Recording
 from fem_mesh.steps import Step, many
 from fem_mesh.trace import Trace
 from fem_mesh.watch.front import PLAYER_WIDGET, module
-from fem_mesh.watch.live import Live, undisturbed
+from fem_mesh.watch.live import Live
 from fem_mesh.watch.page import html_of_trace
 from fem_mesh.watch.wire import as_data
 
@@ -64,7 +64,6 @@ class Player(Live):
         self.step = step
         self.on_msg(self._answer)
 
-    @undisturbed
     def load(self, steps: int = MORE) -> None:
         """Take ``steps`` further steps, as many as there are; those that came before a generator fails are shown."""
         if steps < 1:

@@ -195,6 +195,21 @@ def test_a_loop_under_way_stays_when_another_view_asks_for_a_mesh(board):
     board.has_corners(6)
 
 
+def test_undo_takes_back_what_was_done_in_a_view_and_not_what_was_done_in_another(board):
+    other = board.desk.widget(1, "domain-playground", Board)
+    other.draw([(3, 3), (4, 3)], close=False)
+    board.draw([(1, 1), (5, 1), (1, 2)])
+    board.has_corners(3)
+    board.desk.page.wait_for_timeout(800)  # the other view has followed
+    other.press("Control+z")
+    board.desk.page.wait_for_timeout(400)
+    assert len(board.corners()) == 3
+    until(
+        board.desk.page,
+        "() => [...document.querySelectorAll('.fem-sheet canvas')].at(-1).ariaLabel.startsWith('drawing: 4 corners')",
+    )
+
+
 def test_a_loop_that_is_closed_while_a_view_catches_up_stays(board):
     other = board.desk.widget(1, "domain-playground", Board)
     other.draw(L_SHAPE, close=False)

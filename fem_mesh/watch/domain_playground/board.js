@@ -93,15 +93,20 @@ class DomainPlayground {
     if (message.to !== "ask") return;
     this.adopt(message);
     this.redraw();
+    this.catchUpSoon();
+  }
+
+  catchUpSoon() {
     clearTimeout(this.behind);
-    this.behind = setTimeout(() => this.waiting || this.send({ type: "hello" }), CATCH_UP);
+    this.behind = setTimeout(() => (this.waiting ? this.catchUpSoon() : this.send({ type: "hello" })), CATCH_UP);
   }
 
   // The bounds that Python has are shown, unless the hand here is ahead of it.
   adopt({ asked }) {
     if (!asked || this.waiting || this.again) return;
     const { spots, ...bounds } = asked;
-    [this.bounds, this.drawing.spots] = [bounds, spots];
+    this.bounds = bounds;
+    this.drawing.follow({ spots });
     this.controls.show(bounds);
   }
 

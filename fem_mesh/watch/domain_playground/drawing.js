@@ -56,11 +56,16 @@ export class Drawing {
     Object.assign(this, { start, points, segments, open: [], spots: first ? this.spots : [] });
   }
 
-  // Take over what is closed elsewhere; the loop under way here stays. Returns whether there was anything new.
-  follow({ start, points, segments }) {
-    const there = { start, points, segments };
-    if (JSON.stringify(there) === JSON.stringify(this.closed)) return false;
-    Object.assign(this, there);
+  // Take over what was changed elsewhere, here and in all that undo and redo go to where it was as here. The loop under
+  // way stays. Returns whether there was anything new.
+  follow(there) {
+    const part = (state) => JSON.stringify(Object.keys(there).map((name) => state[name])), here = part(this);
+    if (part(there) === here) return false;
+    const followed = (known) => {
+      const then = JSON.parse(known);
+      return part(then) === here ? JSON.stringify({ ...then, ...there }) : known;
+    };
+    Object.assign(this, there, { past: this.past.map(followed), future: this.future.map(followed) });
     return true;
   }
 
